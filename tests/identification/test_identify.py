@@ -1,6 +1,7 @@
 """`sigmahat identify`: the motor of the AwAS plant, from logs with encoders, noise and friction."""
 
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -14,13 +15,14 @@ from checked_logs import RIGHT, log_by_hand
 from command_line import Shell
 from recorded_logs import CONFIGURATION, LEAD, TRUE, Columns, awas_log, read_estimate, write_log
 from recorded_logs import configured as configured_as
+from regression_joint import Joint
 from sigmahat.fmi.instance import Fmu
 from sigmahat.identification.identify import identify
 from sigmahat.identification.quantities import Identified, Quantity
 from sigmahat.identification.regression import Form, Signals, equations, fit
 from sigmahat.identification.write import write
 from sigmahat.logs.configuration import read_configuration
-from sigmahat.logs.log import LogInMemory
+from sigmahat.logs.log import Array, LogInMemory
 
 Found = dict[float, Identified]
 AMPLITUDES = {0.1: 0.3, 0.3: 0.3, 1.0: 0.3, 3.0: 0.3, 8.0: 0.5}  # [Hz]: [N.m]
@@ -330,3 +332,22 @@ def test_one_sine_of_a_free_load_does_not_tell_its_inertia_from_the_motors(
     assert any("the inertia of the load" in note for note in found.notes) is not shown
     if shown:
         assert found.quantities["B"].value == pytest.approx(8e-5, rel=0.1)
+
+
+@pytest.mark.parametrize("factor", [1.0, 2.0])
+def test_a_stiffness_that_changes_in_the_log_does_not_look_like_inertia(
+    factor: float, tmp_path: Path
+) -> None:
+    def stiffness(t: Array) -> Array:
+        """Constant in spite of the lever arm of the joint, and then changed."""
+        steady: Array = (0.07 / (0.07 + 0.02 * np.sin(0.9 * t))) ** 2
+        return steady * np.where(t < 12.0, 1.0, factor)
+
+    joint = Joint(duration=24.0, stiffness=stiffness)
+    log = dict(zip(("theta", "q", "theta_c", "tau"), joint.measurements().T, strict=False))
+    path = tmp_path / "log.toml"
+    path.write_text(configured_as("motor.gamma = 50"))
+    found = identified({"t": joint.t, **log}, path)
+    assert found.quantities["B"].value == pytest.approx(TRUE["B"], rel=0.03)
+    times = re.findall(r"the stiffness changes after (\S+) s", "".join(found.notes))
+    assert [float(t) for t in times] == ([] if factor == 1 else [pytest.approx(12.0, abs=0.3)])

@@ -13,6 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from sigmahat.fmi.instance import Fmu, Slave, Value, installed
+from sigmahat.identification.change import change_of_spring, with_two_springs
 from sigmahat.identification.coherence import coherent_range, is_hidden
 from sigmahat.identification.knees import knees
 from sigmahat.identification.motor import KnownInertia, fit_motor
@@ -36,6 +37,10 @@ _V_A_TICKS = 10000
 _NO_TORQUE = (
     "the torque of the motor is only noise: such a log does not show its inertia and friction, and "
     "they have to be known for the stiffness; record with the motor on"
+)
+_CHANGES = (
+    "the stiffness changes after {t:.4g} s of the log: identified with one spring before, and "
+    "another one after it"
 )
 _HIDDEN = (
     "the deformation differs from the acceleration of the motor by less than the rounding of the "
@@ -82,39 +87,36 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
         raise LogError(f"{log.path}: {_too_short(samples, shortest(T) * T)}")
     longest = max(pieces, key=lambda piece: len(piece.theta))
     noise = TorqueNoise.of(longest.tau, longest.theta, every, T)
-    f_0 = noise.bandwidth
+    bandwidth = noise.bandwidth
     asked = bool(configuration.parameters.get("rls.symmetric", False))
     symmetric = asked and not configuration.symmetric_chosen
     coherent = math.inf if torque_constant else coherent_range(longest, gamma, noise)
     apart = _apart(pieces, count(every))
+    h = apart * T
     thinned = [each.every(apart) for each in pieces]
     inertia = _known_inertia(every, configuration)
-    motor = fit_motor(
-        thinned,
-        apart * T,
-        gamma,
-        symmetric,
-        min(replace(noise, T=apart * T).bandwidth, coherent),
-        inertia,
-    )
-    V_a = _best_V_a(fmu, samples, start, longest, f_0)
-    quantities, notes = dict(motor.quantities), list(samples.notes)
+    f_0 = min(replace(noise, T=h).bandwidth, coherent)
+    change = None if torque_constant else change_of_spring(thinned, h, gamma, f_0)
+    springs = thinned if change is None else with_two_springs(thinned, change)
+    motor = fit_motor(springs, h, gamma, symmetric, f_0, inertia)
+    V_a = _best_V_a(fmu, samples, start, longest, bandwidth)
+    quantities = dict(motor.quantities)
+    notes = [*samples.notes, *([] if change is None else [_CHANGES.format(t=change * h)])]
     no_torque = all(is_only_noise(piece.tau) for piece in pieces)
     rounding = sum(count(every, encoder) ** 2 / 12 for encoder in ("theta", "q"))
     hidden = not torque_constant and is_hidden(
-        thinned, apart * T, gamma, motor.polynomial.f_0, rounding, inertia is not None
+        thinned, h, gamma, f_0, rounding, inertia is not None
     )
     if no_torque or hidden:
         quantities = {name: _not_shown(each) for name, each in quantities.items()}
         notes.append(_NO_TORQUE if no_torque else _HIDDEN)
     if quantities["B"].determined:  # until here it was that of the configuration
-        f_0 = replace(noise, inertia=quantities["B"].value * abs(gamma)).bandwidth
+        bandwidth = replace(noise, inertia=quantities["B"].value * abs(gamma)).bandwidth
     nominal = configuration.ports["tau"].torque_constant
     if torque_constant and nominal is not None:
         quantities["torque_constant"] = motor.torque_constant(nominal)
     spring = motor.spring if math.isfinite(motor.spring) else 0.0
-    zero = quantities.get("zero")
-    center = zero.value if zero is not None and _is_wrong(zero, pieces) else 0.0
+    center = _center(quantities.get("zero"), pieces)
     return Identified(
         quantities=quantities,
         symmetric=motor.polynomial.symmetric,
@@ -122,14 +124,14 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
         m=motor.polynomial.m,
         tau_variance=noise.torque,
         theta_variance=noise.position,
-        bandwidth=2 * math.pi * min(f_0, coherent, _RESOLVED / samples.T),
+        bandwidth=2 * math.pi * min(bandwidth, coherent, _RESOLVED / samples.T),
         coherent=coherent,
         V_a=V_a,
         phi=max(float(np.max(np.abs(piece.phi - center))) for piece in pieces),
         zero=center,
         knees=()
-        if no_torque or hidden
-        else knees(thinned, apart * T, gamma, motor.polynomial, center),
+        if no_torque or hidden or change is not None
+        else knees(thinned, h, gamma, motor.polynomial, center),
         set_point=max(float(np.max(np.abs(piece.set_point))) for piece in pieces),
         torque=0.0 if no_torque else max(spring, *_torques(pieces, gamma)),
         B=float(every["motor.B"]),
@@ -170,12 +172,13 @@ def _known_inertia(every: Mapping[str, Value], configuration: Configuration) -> 
     return KnownInertia(float(every["motor.B"]), std) if given and 0 < std < WIDE else None
 
 
-def _is_wrong(zero: Quantity | None, pieces: Sequence[Signals]) -> bool:
-    """Whether the zero is surely not 0, and far enough to matter."""
+def _center(zero: Quantity | None, pieces: Sequence[Signals]) -> float:
+    """The zero of the deformation, if it is surely not 0 and far enough to matter; else 0."""
     if zero is None or not zero.determined:
-        return False
+        return 0.0
     covered = max(float(np.ptp(piece.phi)) for piece in pieces)
-    return abs(zero.value) > max(zero.half_width, _MATTERS * covered)
+    is_wrong = abs(zero.value) > max(zero.half_width, _MATTERS * covered)
+    return zero.value if is_wrong else 0.0
 
 
 def _check(configuration: Configuration, torque_constant: bool) -> None:
