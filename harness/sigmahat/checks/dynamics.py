@@ -180,7 +180,8 @@ def _encoder_lag(seen: View, found: Fitted) -> _Delay | None:
     if not value["D_theta"] + half["D_theta"] < 0:
         return None
     slope = value[LINEAR] / found.spring.units[0]
-    D_theta = float(seen.every["motor.D_theta"])
+    is_known = float(seen.every["prior.D_theta"]) < WIDE
+    D_theta = float(seen.every["motor.D_theta"]) if is_known else 0.0  # a lower limit of the lag
     lag = seen.gamma * (value["D_theta"] - D_theta) / slope
     if abs(lag) > motor.LONGEST:
         return None
@@ -196,7 +197,8 @@ def _encoder_lag(seen: View, found: Fitted) -> _Delay | None:
     proposed = float(f"{port.delay + lag:.3g}")
     others = [("ports.theta.delay", float(f"{seen.configuration.ports['theta'].delay - lag:.3g}"))]
     key = "ports.q.delay"
-    finding = Finding(Kind.ENCODER_LAG, severity, key, lag, "s", 0.0, proposed, others)
+    least_lag = "" if is_known else "at least "
+    finding = Finding(Kind.ENCODER_LAG, severity, key, lag, "s", 0.0, proposed, others, least_lag)
     return _Delay(finding, error)
 
 

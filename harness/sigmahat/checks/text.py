@@ -122,8 +122,8 @@ _SENTENCES: Mapping[Kind, str] = {
     Kind.ASYMMETRY: "the torque is not symmetric in phi: the errors are {value:.3g} times as "
     "large as with all powers",
     Kind.TORQUE_LAG: "the torque is {ms} later than the motion explains",
-    Kind.ENCODER_LAG: "the viscous friction would be negative, as if q were recorded {ms} {later} "
-    "than theta",
+    Kind.ENCODER_LAG: "the viscous friction would be negative, as if q were recorded {about}{ms} "
+    "{later} than theta",
     Kind.INERTIA: _INERTIA,
     Kind.TORQUE_SCALE: f"{_INERTIA}, as if the torque were geared twice or not at all",
     Kind.OTHER_ROBOT: "{value:.4g} is the start value, of another robot",
