@@ -10,31 +10,36 @@ import numpy as np
 from sigmahat.identification.regression import Equations, Form, Signals, equations, eta, units
 from sigmahat.logs.log import Array
 
-_PLACES = 16  # times that are tried first, then each block between two of them
+_PLACES = 16  # steps in which the time is looked for, then in smaller ones around the best
 _EXPLAINED = 0.3
 """Largest squared error of two springs, over that of one. A change by a fifth leaves 0.04; without
 a change, at least 0.6 was left on 38 logs with hysteresis, backlash and friction of other forms."""
 _ORDER = 4  # powers of the torque of each of the two springs
 
 
-def change_of_spring(pieces: Sequence[Signals], T: float, gamma: float, f_0: float) -> int | None:
+def plain_equations(pieces: Sequence[Signals], T: float, gamma: float, f_0: float) -> Equations:
+    """The equations of one spring with even and odd powers, without a set-point.
+
+    T, gamma and f_0 as for fit_motor().
+    """
+    form = Form(f_0, min(2.5 * f_0, 0.1 / T), n=_ORDER, symmetric=False)
+    return equations(pieces, T, gamma, form)
+
+
+def change_of_spring(system: Equations, pieces: Sequence[Signals]) -> int | None:
     """The sample from which on another spring explains the log far better; None if none does, or
     if the log has a set-point.
 
-    Samples are counted over all pieces. T, gamma and f_0 as for fit_motor().
+    Samples are counted over all pieces, of which these are the plain equations.
     """
     if any(np.ptp(piece.set_point) > 0 for piece in pieces):
         return None
-    form = Form(f_0, min(2.5 * f_0, 0.1 / T), n=_ORDER, symmetric=False)
-    system = equations(pieces, T, gamma, form)
-    blocks = len(system.rows)
-    step = max(1, blocks // _PLACES)
-    places = range(step, blocks, step)
-    if not len(places):
-        return None
-    first = min(places, key=lambda place: _error(system, place))
-    near = range(max(first - step + 1, 1), min(first + step, blocks))
-    best = min(near, key=lambda place: _error(system, place))
+    blocks = step = len(system.rows)
+    best = 0
+    while step > 1:
+        step = max(1, step // _PLACES)
+        near = range(best - _PLACES * step, best + _PLACES * step + 1, step)
+        best = min((n for n in near if 0 < n < blocks), key=lambda place: _error(system, place))
     if not _error(system, best) < _EXPLAINED * _error(system, blocks):
         return None
     return int(system.rows[:best].sum())

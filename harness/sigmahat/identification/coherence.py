@@ -6,7 +6,6 @@ encoders between their counts. As the regressor of the stiffness, such errors ma
 
 import itertools
 import math
-from collections.abc import Sequence
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
@@ -14,9 +13,11 @@ from numpy.lib.stride_tricks import sliding_window_view
 from sigmahat.identification.noise import TorqueNoise
 from sigmahat.identification.regression import (
     MOTOR,
+    Equations,
     Form,
     Signals,
     equations,
+    eta,
     factor,
     fit,
     rows,
@@ -93,22 +94,22 @@ def spectra(x: Array, y: Array, h: float) -> tuple[Array, Array, Array]:
     return frequency, coherence, density
 
 
-def is_hidden(
-    pieces: Sequence[Signals], T: float, gamma: float, f_0: float, noise: float, known: bool
-) -> bool:
+def is_hidden(system: Equations, f_0: float, T: float, noise: float, known: bool) -> bool:
     """Whether what the motor leaves of the deformation is rounding: then the log shows how
     inertia, friction and the load together move, and not one of them.
 
     A free load in one slow sine does that: the spring has the torque of one more inertia.
 
-    f_0    low pass of the equations [Hz]
-    noise  variance of the rounding of the deformation [rad2]
-    known  whether the inertia is known
+    system  the equations, see plain_equations()
+    f_0, T  their low pass [Hz], and the time between samples [s]
+    noise   variance of the rounding of the deformation [rad2]
+    known   whether the inertia is known
     """
-    system = equations(pieces, T, gamma, Form(f_0, f_0))
-    R = factor(system.R.reshape(-1, system.R.shape[2]))
-    others, spring = R[:, int(known) : -2], R[:, -2]  # the last one is y
-    own = spring - others @ np.linalg.lstsq(others, spring, rcond=None)[0]
-    variance = float(own @ own) / int(system.rows.sum()) * system.units[0] ** 2
-    left = min(1.0, _BUTTERWORTH * 4 * f_0 * T)  # of white noise, every second sample
-    return bool(noise * left > _HIDDEN * variance)
+    names = [*MOTOR[int(known) :], *eta(2, 1)]  # the spring is a constant and a slope
+    own = system.only(names)
+    R = factor(own.R.reshape(-1, own.R.shape[2]))
+    others, spring = R[:, :-2], R[:, -2]  # the last one is y
+    left = spring - others @ np.linalg.lstsq(others, spring, rcond=None)[0]
+    variance = float(left @ left) / int(system.rows.sum()) * system.units[0] ** 2
+    share = min(1.0, _BUTTERWORTH * 4 * f_0 * T)  # of white noise, every second sample
+    return bool(noise * share > _HIDDEN * variance)

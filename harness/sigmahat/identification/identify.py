@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from sigmahat.fmi.instance import Fmu, Slave, Value, installed
-from sigmahat.identification.change import change_of_spring, with_two_springs
+from sigmahat.identification.change import change_of_spring, plain_equations, with_two_springs
 from sigmahat.identification.coherence import coherent_range, is_hidden
 from sigmahat.identification.knees import knees
 from sigmahat.identification.motor import KnownInertia, fit_motor
@@ -96,17 +96,15 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
     thinned = [each.every(apart) for each in pieces]
     inertia = _known_inertia(every, configuration)
     f_0 = min(replace(noise, T=h).bandwidth, coherent)
-    change = None if torque_constant else change_of_spring(thinned, h, gamma, f_0)
+    plain = plain_equations([replace(each, tau_e=None) for each in thinned], h, gamma, f_0)
+    change = None if torque_constant else change_of_spring(plain, thinned)
     springs = thinned if change is None else with_two_springs(thinned, change)
     motor = fit_motor(springs, h, gamma, symmetric, f_0, inertia)
-    V_a = _best_V_a(fmu, samples, start, longest, bandwidth)
     quantities = dict(motor.quantities)
     notes = [*samples.notes, *([] if change is None else [_CHANGES.format(t=change * h)])]
     no_torque = all(is_only_noise(piece.tau) for piece in pieces)
     rounding = sum(count(every, encoder) ** 2 / 12 for encoder in ("theta", "q"))
-    hidden = not torque_constant and is_hidden(
-        thinned, h, gamma, f_0, rounding, inertia is not None
-    )
+    hidden = not torque_constant and is_hidden(plain, f_0, h, rounding, inertia is not None)
     if no_torque or hidden:
         quantities = {name: _not_shown(each) for name, each in quantities.items()}
         notes.append(_NO_TORQUE if no_torque else _HIDDEN)
@@ -126,7 +124,7 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
         theta_variance=noise.position,
         bandwidth=2 * math.pi * min(bandwidth, coherent, _RESOLVED / samples.T),
         coherent=coherent,
-        V_a=V_a,
+        V_a=_best_V_a(fmu, samples, start, longest, noise.bandwidth),
         phi=max(float(np.max(np.abs(piece.phi - center))) for piece in pieces),
         zero=center,
         knees=()
