@@ -70,8 +70,8 @@ static int is_refit(const sh_refit *refit, int size)
 {
     int i;
 
-    if (refit->row < 0 || refit->row > size + SH_REFIT_STEPS || refit->trial < 0 || refit->trial >= SH_GROUPS ||
-        refit->last_trial < 0 || refit->last_trial >= SH_GROUPS) {
+    if (refit->row < 0 || refit->row > size + SH_REFIT_STEPS || refit->trial < 0 ||
+        refit->trial >= SH_GROUPS || refit->last_trial < 0 || refit->last_trial >= SH_GROUPS) {
         return 0;
     }
     for (i = 0; i < SH_GROUPS; ++i) {
@@ -88,10 +88,10 @@ static int are_numbers(const sh_regression_state *state)
     if (state->modality < SH_MODALITY_RESIDUAL || state->modality > SH_MODALITY_MODEL ||
         state->signals.decimation < 1 || state->signals.decimation > SH_LARGEST_DECIMATION ||
         state->mean.samples < 0 || state->mean.samples >= state->signals.decimation ||
-        state->row.tick < 0 || state->row.tick > SH_LARGEST_DECIMATION || state->signals.begun < 0 ||
-        state->signals.begun > 1 || state->friction_drifts < 0 || state->friction_drifts > 1 ||
-        state->stiffness_known < 0 || state->stiffness_known > 1 || state->change.following < 0 ||
-        state->change.following > 1) {
+        state->row.tick < 0 || state->row.tick > SH_LARGEST_DECIMATION ||
+        state->signals.begun < 0 || state->signals.begun > 1 || state->friction_drifts < 0 ||
+        state->friction_drifts > 1 || state->stiffness_known < 0 || state->stiffness_known > 1 ||
+        state->change.following < 0 || state->change.following > 1) {
         return 0;
     }
     return 1;
