@@ -347,6 +347,12 @@ static int is_block_full(const sh_blocks *blocks)
     return blocks->rows >= blocks->length;
 }
 
+/* First of the steps in a tick since the row, of as many ticks as there are. */
+static int first_step(int tick, int ticks)
+{
+    return (SH_ROW_STEPS * tick + ticks - 1) / ticks;
+}
+
 /* The steps are spread over the ticks until the next row. The refit advances in ticks in which neither the data
  * nor the blocks take a row, if there are at least three.
  */
@@ -354,15 +360,14 @@ static void take_steps(sh_regression_state *state, const sh_parameters *p)
 {
     const int ticks = state->signals.decimation > 1 ? state->signals.decimation - 1 : 1;
     const int tick = state->row.tick;
-    const int first = (SH_ROW_STEPS * tick + ticks - 1) / ticks;
-    const int end = (SH_ROW_STEPS * (tick + 1) + ticks - 1) / ticks;
-    int is_busy = first < 2 || is_block_full(&state->blocks), step;
+    int is_busy, step;
 
-    if (tick >= ticks) { /* all steps are done */
+    if (tick < 0 || tick >= ticks) { /* all steps are done */
         return;
     }
-    state->row.tick += 1;
-    for (step = first; step < end; ++step) {
+    state->row.tick = tick + 1;
+    is_busy = first_step(tick, ticks) < 2 || is_block_full(&state->blocks);
+    for (step = first_step(tick, ticks); step < first_step(tick + 1, ticks); ++step) {
         take_step(state, p, step);
         is_busy = is_busy || is_block_full(&state->blocks);
     }

@@ -37,6 +37,7 @@ static int choose_columns(const sh_regression_state *state, const sh_parameters 
 {
     int places[SH_MAX_COLUMNS] = {0}, size = 0, place, i;
 
+    /*@ loop unroll SH_MAX_COLUMNS; */
     for (i = 0; i < state->columns.size; ++i) {
         places[i] = place_of(state, p, i);
     }
@@ -200,9 +201,15 @@ void sh_refit_take(sh_regression_state *state)
 void sh_refit_advance(sh_regression_state *state, const sh_parameters *p)
 {
     sh_refit *refit = &state->refit;
-    const int step = refit->row - state->columns.size;
+    const int rows = state->columns.size, step = refit->row - rows;
 
-    if (step < 0) {
+    if (refit->row >= rows + SH_REFIT_STEPS) {
+        if (refit->pause >= SH_REFIT_PAUSE * state->blocks.count * SH_BLOCK) {
+            start_refit(state, p);
+        }
+        return;
+    }
+    if (refit->row < rows) {
         take_row(state);
     } else if (step == 0) {
         end_refit(state, p);
@@ -213,17 +220,12 @@ void sh_refit_advance(sh_regression_state *state, const sh_parameters *p)
         if (refit->trial == 0) {
             sh_friction_drift(state, refit->time, step - 2);
         }
-    } else if (step < SH_REFIT_STEPS) {
+    } else {
         if (refit->trial == 0) {
             sh_forget(state, p, refit->time);
             refit->time = 0;
         }
         refit->pause = 0;
-    } else {
-        if (refit->pause >= SH_REFIT_PAUSE * state->blocks.count * SH_BLOCK) {
-            start_refit(state, p);
-        }
-        return;
     }
     refit->row += 1;
 }

@@ -66,10 +66,12 @@ def test_a_processor_computes_what_the_host_computes(
         for t in (HOST, target)
     )
     assert 0 < np.count_nonzero(here["valid"] == 0) < 30
-    # Torque and stiffness of FilteredRegression are sums of up to 44 terms that nearly cancel.
+    # Torque and stiffness of FilteredRegression are sums of up to 44 terms that nearly cancel. The
+    # terms, which have the coefficients eta, are less exact than their sums.
     terms = 10 if configuration in REGRESSION else 1
     for name, expected in here.items():
-        atol = terms * ROUNDING[real] * np.abs(expected).max()
+        factor = 2 * terms if name == "eta" else terms
+        atol = factor * ROUNDING[real] * np.abs(expected).max()
         np.testing.assert_allclose(there[name], expected, rtol=0, atol=atol, err_msg=name)
 
 
