@@ -244,6 +244,13 @@ def test_a_torque_behind_the_gear_shows_in_the_inertia(tmp_path: Path) -> None:
     assert (found.key, found.proposed) == ("ports.tau.gear_ratio", GEAR)
 
 
+def test_what_no_log_shows_is_listed(tmp_path: Path) -> None:
+    text = RIGHT.replace("motor.B = 1.05e-4\n", "")
+    found = [sentence(each) for each in checked(knee_log(), text, tmp_path).of(Severity.RESTS_ON)]
+    assert "motor.B: 2.3e-05 is the start value, of another robot" in found
+    assert any(each.startswith("ports.theta.unit: theta in counts and q in deg;") for each in found)
+
+
 def test_a_torque_that_saturates_is_noted(tmp_path: Path) -> None:
     log = joint_log(KNEE, 1e-3)
     limit = 0.8 * sum(A for A, *_ in SINES)

@@ -233,8 +233,9 @@ def rests_on(
     yield Finding(Kind.TORQUE_GAIN, Severity.RESTS_ON, key, per_gain, "", gain)
     ports = {name: configuration.ports.get(name) for name in ("theta", "q")}
     units = [f"{name} in {port.unit or PORTS[name]}" for name, port in ports.items() if port]
-    about = " and ".join(units)
-    yield Finding(Kind.UNIT, Severity.RESTS_ON, "ports.theta.unit", 1.0, "", about=about)
+    if len(units) == 2:
+        about = " and ".join(units)
+        yield Finding(Kind.UNIT, Severity.RESTS_ON, "ports.theta.unit", 1.0, "", about=about)
     for name in ("B", "D_theta"):
         is_other = every[f"motor.{name}"] == start[f"motor.{name}"]
         if every["modality"] == "Residual" and is_other and float(every[f"prior.{name}"]) < WIDE:
