@@ -120,7 +120,8 @@ static int doubt_of(const sh_regression_state *state, const sh_parameters *p, co
     if (phi > SH_LEAST_LIMIT * p->range.phi && phi > largest_deformation_filtered_regression(p)) {
         doubt = SH_DOUBT_OUT_OF_RANGE;
     }
-    if (sh_fabs(sum[SH_COLUMN_VISCOUS]) > SH_OUTSIDE_PRIOR * p->prior.D_theta) {
+    if (sh_fabs(sum[SH_COLUMN_VISCOUS]) > SH_OUTSIDE_PRIOR * p->prior.D_theta ||
+        1 + sum[SH_COLUMN_VISCOUS] < -SH_BELOW_ZERO * state->friction_std) {
         doubt = SH_DOUBT_FRICTION;
     }
     if (sh_fabs(sum[SH_COLUMN_INERTIA]) > SH_OUTSIDE_PRIOR * p->prior.B) {

@@ -73,6 +73,7 @@ static void start_refit(sh_regression_state *state, const sh_parameters *p)
 void sh_refit_start(sh_regression_state *state, const sh_parameters *p)
 {
     state->variance_factor = state->misfit = 1;
+    state->friction_std = p->prior.D_theta;
     start_refit(state, p);
     state->posterior = state->refit.posterior;
 }
@@ -159,6 +160,23 @@ static void end_refit(sh_regression_state *state, const sh_parameters *p)
     sh_posterior_estimate(&state->posterior, p->prior.B, state->beta, state->columns.size);
 }
 
+/* Std deviation of the relative error of viscous friction. */
+static void judge_friction(sh_regression_state *state, const sh_parameters *p)
+{
+    const sh_columns *columns = &state->columns;
+    int i;
+
+    for (i = 0; i < columns->size; ++i) {
+        if (columns->column[i].kind == SH_COLUMN_VISCOUS) {
+            sh_real c[SH_MAX_COLUMNS] = {0};
+
+            c[i] = columns->column[i].prior;
+            state->friction_std = sh_std_deviation(
+                sh_posterior_variance(&state->posterior, p->prior.B, c, columns->size));
+        }
+    }
+}
+
 /* The next refit is a trial after every one that changed the estimate. */
 static void plan_refit(sh_regression_state *state, const sh_parameters *p)
 {
@@ -215,6 +233,7 @@ void sh_refit_advance(sh_regression_state *state, const sh_parameters *p)
         end_refit(state, p);
     } else if (step == 1) {
         sh_misfit_judge(state, p);
+        judge_friction(state, p);
         plan_refit(state, p);
     } else if (step < SH_REFIT_STEPS - 1) {
         if (refit->trial == 0) {

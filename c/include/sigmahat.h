@@ -89,7 +89,7 @@ enum {
     SH_DOUBT_NOT_EXCITED,        /* sigma_std is too large, as the motion was too small or short */
     SH_DOUBT_MISFIT,             /* sigma_std is too large, as the data contradict the model */
     SH_DOUBT_OUT_OF_RANGE,       /* the deformation is beyond what the parameters are made for */
-    SH_DOUBT_FRICTION,           /* D_theta_hat is beyond three std deviations of its prior */
+    SH_DOUBT_FRICTION,           /* D_theta_hat is far from its prior, or below 0 */
     SH_DOUBT_INERTIA,            /* B_hat is beyond three std deviations of its prior */
     SH_DOUBT_NEGATIVE_STIFFNESS, /* sigma is below 0 */
     SH_DOUBT_CHANGE /* the stiffness may have changed, and the estimate does not follow yet */

@@ -268,7 +268,8 @@ typedef struct {
     sh_real rounding;        /* information about sigma that is only rounding of phi, of all samples
                                 [(rad/N.m)2] */
     sh_real misfit,
-        variance_factor; /* reduced chi-square of the blocks, factor of the variances [1] */
+        variance_factor;  /* reduced chi-square of the blocks, factor of the variances [1] */
+    sh_real friction_std; /* of the relative error of viscous friction, at the last refit [1] */
     /* The last estimate, on which the next row depends: */
     sh_real beta[SH_MAX_COLUMNS]; /* by column, in std deviations of the priors */
     sh_real y;                    /* of the sample, as it was fitted [N.m] */

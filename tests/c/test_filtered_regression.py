@@ -48,6 +48,22 @@ def test_errors_of_the_friction_are_estimated(c: Library, frequency: float, wron
     assert error(found, joint, 2.0) < 0.02
 
 
+NONE, FRICTION = 1, 6  # reasons of doubt
+
+
+@pytest.mark.parametrize(("late", "doubt"), [(0, NONE), (5, FRICTION)])
+def test_a_link_that_is_read_late_has_no_confident_estimate(
+    c: Library, late: int, doubt: int
+) -> None:
+    """GIVEN unknown friction, WHEN q is 5 ms late, THEN that looks like less than none."""
+    z = Joint(D_theta=2e-4).measurements()
+    z[late:, 1] = z[: len(z) - late, 1]
+    found = Estimator(c, {**REGRESSION, "prior.D_theta": 1000.0}).run(z)
+    assert (found["D_theta_hat"][-1] < 0) == (late > 0)
+    assert np.all(found["doubt"][9000:] == doubt)
+    assert np.all(found["confident"][9000:] == (late == 0))
+
+
 def test_rounding_alone_does_not_change_the_inertia(c: Library) -> None:
     """GIVEN a motor that is so slow that its inertia has no effect, WHEN it has turned for a long
     time, THEN B_hat is about the same as before, although theta'' consists of rounding errors."""

@@ -16,7 +16,7 @@ _DOUBTS = {
     "NotExcited": "the motion was too small or too short",
     "Misfit": "the log contradicts the model",
     "OutOfRange": "the deformation is far beyond range.phi",
-    "FrictionOutsidePrior": "friction is further from motor.D_theta than prior.D_theta allows",
+    "FrictionOutsidePrior": "friction is further from motor.D_theta than prior.D_theta, or below 0",
     "InertiaOutsidePrior": "the inertia is further from motor.B than prior.B allows",
     "NegativeStiffness": "the stiffness found is negative",
     "Change": "the stiffness seems to change",
