@@ -292,6 +292,14 @@ def test_the_ssv_has_every_start_value_that_importers_agree_on(case: Path, tmp_p
     assert not found.items() & defaults.items()
 
 
+def test_a_file_says_where_it_is_from(knee: Shell) -> None:
+    for kind, suffix in SUFFIXES.items():
+        knee.run(f"export knee/joint.json --to {kind}")
+        text = Path(f"knee/joint{suffix}").read_text()
+        assert f"learned from knee.parquet, SHA-256 {sha256(Path('knee.parquet'))}" in text
+        assert f"sigmahat {sigmahat.__version__}" in text
+
+
 def test_names_cannot_end_a_comment_or_a_text(knee: Shell) -> None:
     sheet, here = sheet_of(Path()), Path().absolute()
     sheet["logs"][0]["file"] = 'a--->\n<!DOCTYPE x>"; end knee;\r\n%}\nquit /* é'

@@ -106,6 +106,14 @@ def test_ranges_contain_the_values(results: Path, sheet: Sheet) -> None:
     assert high - 1 == pytest.approx(1 - low)
 
 
+def test_a_file_says_where_it_is_from(results: Path, sheet: Sheet) -> None:
+    for name in FILES.values():
+        text = (results / name).read_text()
+        assert sheet["logs"][0]["sha256"] in text
+        assert "joint_flexibility.stiffness.factor = 1 1, 95 % from" in text
+        assert "A placeholder" in text
+
+
 def test_a_sheet_without_motion_is_refused(sheet: Sheet, shell: Shell) -> None:
     sheet["polynomial"]["phi"] = None
     Path("joint.json").write_text(json.dumps(sheet))

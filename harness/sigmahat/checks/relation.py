@@ -86,8 +86,7 @@ def _scale(here: Relation, slope: Slope) -> Relation:
     }
     key, listed = best.key, list(others.items())
     what = (key, slope.value, "", 1.0, best.value, listed, "held" if size > 1 else "")
-    is_gamma = key == "ports.theta.gear_ratio" and best.value == abs(here.seen.gamma)
-    if size > 1 and not is_gamma and _is_sane(here):
+    if size > 1 and not _is_gamma(best, here.seen) and _is_sane(here):
         return replace(here, findings=[Finding(Kind.SLOPE, Severity.NOTE, *what)])
     repaired = _scaled(here.seen, best.port, best.factor)
     return Relation([Finding(Kind.SLOPE, Severity.WRONG, *what)], repaired, fitted(repaired))
@@ -120,10 +119,14 @@ def _likely(seen: View, slope: Slope) -> Change | None:
     gears = [1 / now, *(now * 10.0**k for k in (-3, -2, -1, 1, 2, 3))]
     known += [Change("theta", "ports.theta.gear_ratio", gear, now / gear) for gear in gears]
     best = min(known, key=lambda each: distance(each.on_theta, size))
-    is_gamma = best.port == "theta" and best.value == abs(seen.gamma)
-    if distance(best.on_theta, size) > (_LIKE if is_gamma else _LIKELY):
+    if distance(best.on_theta, size) > (_LIKE if _is_gamma(best, seen) else _LIKELY):
         return None
     return None if _encoder_denies(seen, best) else best
+
+
+def _is_gamma(change: Change, seen: View) -> bool:
+    """Whether the change makes the gear ratio of theta that of motor.gamma."""
+    return change.port == "theta" and change.value == abs(seen.gamma)
 
 
 def _encoder_denies(seen: View, change: Change) -> bool:

@@ -251,8 +251,8 @@ class Columns:
     @property
     def unreadable(self) -> list[str]:
         """What is wrong with the columns whose names promise numbers, in sentences."""
-        texts = {name: each.text for name, each in self.facts.items() if each.text}
-        return [text for name, text in texts.items() if meaning(name).quantity is not None]
+        texts = [each for each in self.signals if each.facts.text]
+        return [each.facts.text for each in texts if each.meaning.quantity is not None]
 
 
 def read_columns(log: Log) -> Columns:

@@ -7,7 +7,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from sigmahat.identification.regression import Equations, Form, Signals, equations, eta, units
+from sigmahat.identification.regression import (
+    WIDEST,
+    Equations,
+    Form,
+    Signals,
+    equations,
+    eta,
+    units,
+)
 from sigmahat.logs.log import Array
 
 _PLACES = 16  # steps in which the time is looked for, then in smaller ones around the best
@@ -22,7 +30,7 @@ def plain_equations(pieces: Sequence[Signals], T: float, gamma: float, f_0: floa
 
     T, gamma and f_0 as for fit_motor().
     """
-    form = Form(f_0, min(2.5 * f_0, 0.1 / T), n=_ORDER, symmetric=False)
+    form = Form(f_0, min(2.5 * f_0, WIDEST / T), n=_ORDER, symmetric=False)
     return equations(pieces, T, gamma, form)
 
 
@@ -34,27 +42,26 @@ def change_of_spring(system: Equations, pieces: Sequence[Signals]) -> int | None
     """
     if any(np.ptp(piece.set_point) > 0 for piece in pieces):
         return None
+    scale = system.scale
+    X, y = system.R[:, :, :-1] / np.where(scale > 0, scale, 1.0), system.R[:, :, -1].ravel()
+    spring = [system.names.index(name) for name in eta(_ORDER, 1)]
+
+    def error(place: int) -> float:
+        """Sum of the squared errors with another spring from this block on."""
+        later = X[:, :, spring] * (np.arange(len(X)) >= place)[:, None, None]
+        both = np.concatenate([X, later], axis=2).reshape(len(y), -1)
+        left = y - both @ np.linalg.lstsq(both, y, rcond=1e-10)[0]
+        return float(left @ left)
+
     blocks = step = len(system.rows)
     best = 0
     while step > 1:
         step = max(1, step // _PLACES)
         near = range(best - _PLACES * step, best + _PLACES * step + 1, step)
-        best = min((n for n in near if 0 < n < blocks), key=lambda place: _error(system, place))
-    if not _error(system, best) < _EXPLAINED * _error(system, blocks):
+        best = min((n for n in near if 0 < n < blocks), key=error)
+    if not error(best) < _EXPLAINED * error(blocks):
         return None
     return int(system.rows[:best].sum())
-
-
-def _error(system: Equations, place: int) -> float:
-    """Sum of the squared errors with another spring from this block on."""
-    scale = system.scale
-    X = system.R[:, :, :-1] / np.where(scale > 0, scale, 1.0)
-    spring = [system.names.index(name) for name in eta(_ORDER, 1)]
-    later = X[:, :, spring] * (np.arange(len(X)) >= place)[:, None, None]
-    both = np.concatenate([X, later], axis=2).reshape(-1, X.shape[2] + len(spring))
-    y = system.R[:, :, -1].ravel()
-    error = y - both @ np.linalg.lstsq(both, y, rcond=1e-10)[0]
-    return float(error @ error)
 
 
 def with_two_springs(pieces: Sequence[Signals], first: int) -> list[Signals]:

@@ -96,15 +96,14 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
     thinned = [each.every(apart) for each in pieces]
     inertia = _known_inertia(every, configuration)
     f_0 = min(replace(noise, T=h).bandwidth, coherent)
-    plain = plain_equations([replace(each, tau_e=None) for each in thinned], h, gamma, f_0)
-    change = None if torque_constant else change_of_spring(plain, thinned)
+    known, change, hidden = inertia is not None, None, False
+    if not torque_constant:
+        change, hidden = _spring_of(thinned, h, gamma, f_0, every, known)
     springs = thinned if change is None else with_two_springs(thinned, change)
     motor = fit_motor(springs, h, gamma, symmetric, f_0, inertia)
     quantities = dict(motor.quantities)
     notes = [*samples.notes, *([] if change is None else [_CHANGES.format(t=change * h)])]
     no_torque = all(is_only_noise(piece.tau) for piece in pieces)
-    rounding = sum(count(every, encoder) ** 2 / 12 for encoder in ("theta", "q"))
-    hidden = not torque_constant and is_hidden(plain, f_0, h, rounding, inertia is not None)
     if no_torque or hidden:
         quantities = {name: _not_shown(each) for name, each in quantities.items()}
         notes.append(_NO_TORQUE if no_torque else _HIDDEN)
@@ -168,6 +167,22 @@ def _known_inertia(every: Mapping[str, Value], configuration: Configuration) -> 
     std = float(every["prior.B"])
     given = "motor.B" in configuration.parameters
     return KnownInertia(float(every["motor.B"]), std) if given and 0 < std < WIDE else None
+
+
+def _spring_of(
+    pieces: Sequence[Signals],
+    T: float,
+    gamma: float,
+    f_0: float,
+    every: Mapping[str, Value],
+    known: bool,
+) -> tuple[int | None, bool]:
+    """The sample at which the stiffness changes, None if it does not; and whether rounding hides
+    what only a spring explains. known: whether the inertia is known.
+    """
+    plain = plain_equations(pieces, T, gamma, f_0)
+    rounding = sum(count(every, encoder) ** 2 / 12 for encoder in ("theta", "q"))
+    return change_of_spring(plain, pieces), is_hidden(plain, f_0, T, rounding, known)
 
 
 def _center(zero: Quantity | None, pieces: Sequence[Signals]) -> float:

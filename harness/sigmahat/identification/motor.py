@@ -12,6 +12,7 @@ from sigmahat.identification.quantities import Quantity
 from sigmahat.identification.regression import (
     COULOMB_VELOCITY,
     MOTOR,
+    WIDEST,
     Fit,
     Form,
     Signals,
@@ -25,7 +26,6 @@ from sigmahat.identification.regression import (
 from sigmahat.identification.spring import Spring
 
 _UNITS = {"B": "kg.m2", "D_theta": "N.m.s/rad", "tau_coulomb": "N.m"}
-_WIDEST = 0.1  # highest low pass of the velocity, in sampling frequencies
 _RELATIVE = 0.1  # largest half width of a determined value, over the value
 _NEGLIGIBLE = 0.005  # the same for Coulomb friction, over the torque: it may be zero
 _POWERS = 4
@@ -81,7 +81,7 @@ def fit_motor(
     """
     longest = max(pieces, key=lambda piece: len(piece.theta))
     m_most = _M if np.ptp(longest.set_point) > 0 else 1
-    form = Form(f_0, min(2.5 * f_0, _WIDEST / T), n=_N, m=m_most)
+    form = Form(f_0, min(2.5 * f_0, WIDEST / T), n=_N, m=m_most)
     without_sensor = [replace(piece, tau_e=None) for piece in pieces]
     form, polynomial = _with_spring(without_sensor, T, gamma, form, symmetric)
     torque = float(np.std(np.concatenate([piece.tau for piece in pieces])))
@@ -180,7 +180,7 @@ def _variants(
     best = min(errors, key=lambda each: np.nan_to_num(errors[each], nan=np.inf))
     chosen = best if is_worse(every[plain][0], every[best][0]) else plain
     filters = [
-        fits_of(replace(chosen, wide=min(2 * form.wide, 2 * _WIDEST / T))),
+        fits_of(replace(chosen, wide=min(2 * form.wide, 2 * WIDEST / T))),
         fits_of(replace(chosen, f_0=0.6 * form.f_0)),
     ]
     first = every.pop(chosen)

@@ -35,6 +35,7 @@ from sigmahat.logs.sampling import Samples, stretches
 
 MOTOR = ("B", "D_theta", "tau_coulomb")  # first columns, which describe the motor
 COULOMB_VELOCITY = 0.02  # v_s, over which the friction changes its sign [rad/s]
+WIDEST = 0.1  # highest low pass of the velocity, in sampling frequencies
 CONSTANT = "constant"  # name of the column of c
 _BLOCK = 0.25  # [s]; errors further apart are taken as independent
 _WINDOW = 1 << 14  # rows that are filtered at a time, about

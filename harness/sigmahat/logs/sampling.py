@@ -179,10 +179,12 @@ def _column(log: Log, name: str, port: Port, t: Array, notes: list[str]) -> Arra
         notes.append(f"{name}: unwrapped {jumps} times at {port.wrap:g} {port.unit or ''}".rstrip())
     values = convert(name, port, values)
     if port.wrap is None and PORTS[name] == "rad":
-        steps, intervals = np.diff(values), np.diff(t)
-        if len(steps):
-            steps[intervals > _USUAL_INTERVALS * np.nanmedian(intervals)] = 0.0  # gaps
+        steps = np.diff(values)
         jump = float(np.nanmax(np.abs(steps, out=steps), initial=0.0))
+        if jump > np.pi:  # of the steps that are no gaps
+            intervals = np.diff(t)
+            steps = steps[~(intervals > _USUAL_INTERVALS * np.nanmedian(intervals))]
+            jump = float(np.nanmax(steps, initial=0.0))
         if jump > np.pi and port.unit is not None and name != "theta_c":
             notes.append(f"{name}: jumps by {jump:.3g} rad; if the encoder wraps, set wrap")
     return values
