@@ -68,6 +68,12 @@ static void log_skipped(const sh_measurement *z, double t, const char *who, sh_i
               who, t, z->theta, z->q, z->tau);
 }
 
+/* The limit takes time to compute, and is never less than range.phi. */
+static int is_too_far(const sh_parameters *p, double phi)
+{
+    return fabs(phi) > p->range.phi && fabs(phi) > sh_parameters_largest_deformation(p);
+}
+
 static sh_status tick(sh_estimator_fmu *fmu, double t, double after, const char *who,
                       sh_instance *log)
 {
@@ -86,7 +92,7 @@ static sh_status tick(sh_estimator_fmu *fmu, double t, double after, const char 
         sh_report(log, SH_OK, "%sMeasurements are good again at t = %.9g s, %g ticks skipped.", who,
                   t + after, skipped);
     }
-    if (!fmu->strained && fabs(fmu->output.phi) > sh_parameters_largest_deformation(p)) {
+    if (!fmu->strained && is_too_far(p, fmu->output.phi)) {
         fmu->strained = 1;
         status = SH_WARNING;
         sh_report(log, SH_WARNING,

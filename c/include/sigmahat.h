@@ -325,7 +325,7 @@ void sh_parameters_default(sh_parameters *p);
 int sh_parameters_check(const sh_parameters *p, sh_violation *violation);
 
 /* Largest |phi| [rad] for which the parameters are made. The stiffness at a larger deformation may
- * be wrong by much. Infinite for a method that has no such limit.
+ * be wrong by much. Never less than range.phi, and infinite for a method that has no such limit.
  *
  * p  parameters that pass sh_parameters_check
  */

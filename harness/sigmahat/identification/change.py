@@ -14,6 +14,7 @@ from sigmahat.identification.regression import (
     Signals,
     equations,
     eta,
+    factor,
     units,
 )
 from sigmahat.logs.log import Array
@@ -43,13 +44,14 @@ def change_of_spring(system: Equations, pieces: Sequence[Signals]) -> int | None
     if any(np.ptp(piece.set_point) > 0 for piece in pieces):
         return None
     scale = system.scale
-    X, y = system.R[:, :, :-1] / np.where(scale > 0, scale, 1.0), system.R[:, :, -1].ravel()
+    R = system.R / np.append(np.where(scale > 0, scale, 1.0), 1.0)
     spring = [system.names.index(name) for name in eta(_ORDER, 1)]
 
     def error(place: int) -> float:
         """Sum of the squared errors with another spring from this block on."""
-        later = X[:, :, spring] * (np.arange(len(X)) >= place)[:, None, None]
-        both = np.concatenate([X, later], axis=2).reshape(len(y), -1)
+        before, later = (factor(each.reshape(-1, R.shape[2])) for each in (R[:place], R[place:]))
+        one, other = np.concatenate([before, later]), np.concatenate([0 * before, later])
+        both, y = np.column_stack([one[:, :-1], other[:, spring]]), one[:, -1]
         left = y - both @ np.linalg.lstsq(both, y, rcond=1e-10)[0]
         return float(left @ left)
 
