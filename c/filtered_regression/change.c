@@ -34,7 +34,7 @@ static void begin(sh_regression_state *state)
 /* The blocks are those of hypothesis 1, and so are the data: those of all samples contain some of behind t, which
  * contradict what they say about the motor. The next posterior follows.
  */
-static void adopt(sh_regression_state *state, const sh_parameters *p)
+static void adopt(sh_regression_state *state)
 {
     sh_blocks *blocks = &state->blocks;
     sh_change *change = &state->change;
@@ -45,7 +45,7 @@ static void adopt(sh_regression_state *state, const sh_parameters *p)
     state->data = change->changed;
     state->surplus = state->spread = state->rounding = 0;
     state->noise.information = state->noise.gain = 0;
-    sh_refit_restart(state, p);
+    sh_refit_restart(state);
     change->following = 1;
     change->usual_misfit *=
         SH_SUDDEN_MISFIT; /* what was learned of the motor may not fit as well */
@@ -85,7 +85,7 @@ void sh_change_judge(sh_regression_state *state, const sh_parameters *p, sh_real
                                    2 * sh_fmin(changed / level, SH_LARGEST_EVIDENCE / 2) - 2,
                                0);
     if (change->evidence > SH_HAS_CHANGED * sh_sqrt(level) && change->following == 0) {
-        adopt(state, p);
+        adopt(state);
     } else if (!(change->evidence > 0) || change->blocks >= SH_LONGEST_TEST) {
         begin(state);
     }

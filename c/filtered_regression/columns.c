@@ -85,12 +85,27 @@ const sh_column_kind sh_column_kinds[SH_COLUMN_KINDS] = {
     [SH_COLUMN_INERTIA] = {PRIOR(B), ONE, SH_SIGNAL_NONE, 0, MOTOR},
 };
 
-/* Half width of a dead zone or an element of hysteresis over range.phi; 0: of another column [1]. */
-static sh_real half_width(const sh_column *column)
+/* Half width of a dead zone or an element of hysteresis, or place of a knee, over range.phi [1]; else 0. If the
+ * torque is symmetric, a knee at a place > 0 is on both sides.
+ */
+static sh_real place_of(const sh_column *column, const sh_parameters *p)
 {
-    return column->kind == SH_COLUMN_DEAD_ZONE    ? DEAD_ZONES[column->i % SH_WIDTHS]
-           : column->kind == SH_COLUMN_HYSTERESIS ? HYSTERESES[column->i % SH_WIDTHS]
-                                                  : 0;
+    const sh_real first = p->range.knee > 0 ? p->range.knee : SH_POSSIBLE_KNEE,
+                  second = p->range.knee_2;
+    const sh_real knees[KNEES] = {
+        [LEFT] = -first, [RIGHT] = first, [SECOND_LEFT] = -second, [SECOND_RIGHT] = second};
+
+    switch (column->kind) {
+    case SH_COLUMN_DEAD_ZONE:
+        return DEAD_ZONES[column->i % SH_WIDTHS];
+    case SH_COLUMN_HYSTERESIS:
+        return HYSTERESES[column->i % SH_WIDTHS];
+    case SH_COLUMN_KNEE:
+    case SH_COLUMN_POSSIBLE_KNEE:
+        return knees[column->i % KNEES];
+    default:
+        return 0;
+    }
 }
 
 static int is_knee(const sh_column *column)
@@ -98,21 +113,9 @@ static int is_knee(const sh_column *column)
     return column->kind == SH_COLUMN_KNEE || column->kind == SH_COLUMN_POSSIBLE_KNEE;
 }
 
-/* Place of a knee over range.phi [1]. If the torque is symmetric, a place > 0 is on both sides. */
-static sh_real place_of_knee(const sh_column *column, const sh_parameters *p)
+int sh_column_is_distinct(const sh_column *column, sh_real phi_min, sh_real phi_max)
 {
-    const sh_real first = p->range.knee > 0 ? p->range.knee : SH_POSSIBLE_KNEE,
-                  second = p->range.knee_2;
-    const sh_real places[KNEES] = {
-        [LEFT] = -first, [RIGHT] = first, [SECOND_LEFT] = -second, [SECOND_RIGHT] = second};
-
-    return places[column->i % KNEES];
-}
-
-int sh_column_is_distinct(const sh_column *column, const sh_parameters *p, sh_real phi_min,
-                          sh_real phi_max)
-{
-    return half_width(column) <= SH_LOOKS_LIKE_SPRING * (phi_max - phi_min) / p->range.phi;
+    return is_knee(column) || column->place <= SH_LOOKS_LIKE_SPRING * (phi_max - phi_min);
 }
 
 /* ---- which columns there are ------------------------------------------------------------- */
@@ -147,7 +150,7 @@ static void add(column_list *list, const sh_parameters *p, int kind, int i, int 
 {
     const sh_real units[] = {1, p->prior.tau_e, p->prior.tau_e / p->range.phi,
                              p->prior.tau_coulomb};
-    sh_column column = {kind, i, j, 0, 0};
+    sh_column column = {kind, i, j, 0, 0, 0};
     const void *prior = (const char *)p + sh_column_kinds[kind].prior;
 
     column.prior = *(const sh_real *)prior * units[sh_column_kinds[kind].unit];
@@ -164,6 +167,7 @@ static void add(column_list *list, const sh_parameters *p, int kind, int i, int 
         list->column[list->size].j = j;
         list->column[list->size].prior = column.prior;
         list->column[list->size].unit = column.unit;
+        list->column[list->size].place = place_of(&column, p) * p->range.phi;
     }
     list->size += 1;
 }
@@ -252,19 +256,12 @@ void sh_columns_start(sh_columns *columns, const sh_parameters *p)
 
 /* ---- the signals of a sample ------------------------------------------------------------- */
 
-/* max(x - k, 0) for a knee k >= 0, min(x - k, 0) for k < 0; if the torque is symmetric, both. Sets the slope
- * over x.
- */
-static sh_real beyond_knee(sh_real x, sh_real k, int symmetric, sh_real *slope)
+/* max(phi - k, 0) for a knee k >= 0, min(phi - k, 0) for k < 0; if the torque is symmetric, both [rad]. */
+static sh_real beyond_knee(sh_real phi, sh_real k, int symmetric)
 {
-    const int is_left = symmetric ? x < 0 : k < 0;
-    sh_real beyond = sh_fmax(x - k, 0);
+    const int is_left = symmetric ? phi < 0 : k < 0;
 
-    if (is_left) {
-        beyond = sh_fmin(x + sh_fabs(k), 0);
-    }
-    *slope = sh_fabs(beyond) > 0 ? 1 : 0;
-    return beyond;
+    return is_left ? sh_fmin(phi + sh_fabs(k), 0) : sh_fmax(phi - k, 0);
 }
 
 /* Whether the column is the widest dead zone: it may be a knee, and then has a slope. */
@@ -297,18 +294,17 @@ static sh_real signal_of(const sh_column *column, const sh_parameters *p, const 
         return sh_sin(at->q);
     case SH_COLUMN_COS_Q:
         return sh_cos(at->q);
-    case SH_COLUMN_DEAD_ZONE: /* sh_limited(x, h) / h */
-        if (may_be_knee(column) && sh_fabs(at->phi) < half_width(column) * p->range.phi) {
-            *slope = 1 / (half_width(column) * p->range.phi);
+    case SH_COLUMN_DEAD_ZONE: /* sh_limited(phi, h) / h */
+        if (may_be_knee(column) && sh_fabs(at->phi) < column->place) {
+            *slope = 1 / column->place;
         }
-        return sh_limited(at->phi / p->range.phi, half_width(column)) / half_width(column);
+        return sh_limited(at->phi, column->place) / column->place;
     case SH_COLUMN_HYSTERESIS: /* z / h, the element is z <- sh_limited(z + dphi, h) */
-        return at->stop[i % SH_WIDTHS] / (half_width(column) * p->range.phi);
+        return at->stop[i % SH_WIDTHS] / column->place;
     case SH_COLUMN_KNEE:
     case SH_COLUMN_POSSIBLE_KNEE:
-        beyond =
-            beyond_knee(at->phi / p->range.phi, place_of_knee(column, p), p->rls.symmetric, slope);
-        *slope /= p->range.phi;
+        beyond = beyond_knee(at->phi, column->place, p->rls.symmetric) / p->range.phi;
+        *slope = sh_fabs(beyond) > 0 ? 1 / p->range.phi : 0;
         return beyond;
     case SH_COLUMN_SIN_M:
         return sh_sin(p->motor.gamma * at->theta);
@@ -381,24 +377,22 @@ void sh_joint_point_at(sh_joint_point *point, const sh_columns *columns, const s
     }
 }
 
-/* 1 if x may be on the other side of the place where the slope of a knee changes, or of a dead zone that may be
+/* 1 if phi may be on the other side of the place where the slope of a knee changes, or of a dead zone that may be
  * one: that place is known to 2 % of the range, or to a factor of 2.
  */
-static int is_beside(const sh_column *column, const sh_parameters *p, sh_real x)
+static int is_beside(const sh_column *column, const sh_parameters *p, sh_real phi)
 {
-    const sh_real knee = place_of_knee(column, p), h = half_width(column);
+    const sh_real place = column->place, error = SH_PLACE_OF_KNEE * p->range.phi;
 
     if (may_be_knee(column)) {
-        return sh_fabs(x) > h / 2 && sh_fabs(x) < 2 * h;
+        return sh_fabs(phi) > place / 2 && sh_fabs(phi) < 2 * place;
     }
-    return sh_fabs(x - knee) < SH_PLACE_OF_KNEE ||
-           (p->rls.symmetric && sh_fabs(x + knee) < SH_PLACE_OF_KNEE);
+    return sh_fabs(phi - place) < error || (p->rls.symmetric && sh_fabs(phi + place) < error);
 }
 
 sh_real sh_columns_judge_knees(const sh_columns *columns, const sh_parameters *p,
                                const sh_real *beta, sh_joint_point *at)
 {
-    const sh_real x = at->phi / p->range.phi;
     const sh_real slope = at->sigma_nominal + sh_sum_of_products(at->dF, beta, columns->spring);
     sh_real variance = 0;
     int i;
@@ -406,16 +400,12 @@ sh_real sh_columns_judge_knees(const sh_columns *columns, const sh_parameters *p
     for (i = 0; i < columns->spring; ++i) {
         const sh_column *column = &columns->column[i];
         const sh_real outside = slope - at->dF[i] * beta[i]; /* of a dead zone */
-        sh_real jump = beta[i] * column->prior / p->range.phi;
+        const sh_real unit = may_be_knee(column) ? column->place : p->range.phi;
+        const sh_real jump = beta[i] * column->prior / unit;
 
-        if (may_be_knee(column)) {
-            jump /= half_width(column);
-        } else if (!is_knee(column)) {
-            continue;
-        }
         if (may_be_knee(column) && outside + jump < SH_GAP * outside) {
             at->dF[i] = 0;
-        } else if (is_beside(column, p, x)) {
+        } else if ((may_be_knee(column) || is_knee(column)) && is_beside(column, p, at->phi)) {
             variance += sh_square(jump / 2);
         }
     }

@@ -7,7 +7,7 @@
 
 enum {
     GUID_LENGTH = 64,
-    STATE_VERSION = 17 /* to be raised with every change of a model's struct: the GUID changes
+    STATE_VERSION = 18 /* to be raised with every change of a model's struct: the GUID changes
                          with the variables only */
 };
 
