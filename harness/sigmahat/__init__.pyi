@@ -41,8 +41,8 @@ from .runs.scenario import Comparison as Comparison
 from .runs.scenario import Scenario as Scenario
 from .runs.scenario import Sine as Sine
 from .runs.scenario import Sines as Sines
-from .validation.agreement import Agreement as Agreement
-from .validation.agreement import TorqueError as TorqueError
+from .validation.validate import Agreement as Agreement
+from .validation.validate import TorqueError as TorqueError
 from .validation.validate import Validation as Validation
 from .validation.validate import validate as validate
 

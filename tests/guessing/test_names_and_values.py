@@ -98,7 +98,7 @@ def m() -> Motion:
 )
 def test_the_unit_of_times_by_their_steps(step: float, unit: str, m: Motion) -> None:
     found = only({"t": step * np.arange(N), "theta": m.theta, "q": m.q, "tau": m.tau})
-    assert (found.time, found.time_unit) == ("t", unit)
+    assert (found.time, found.clock.unit) == ("t", unit)
 
 
 def test_a_velocity_tells_the_unit_of_its_position(m: Motion) -> None:

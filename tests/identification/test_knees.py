@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from recorded_logs import Array
-from sigmahat.identification.knees import knees
 from sigmahat.identification.motor import fit_motor
 from sigmahat.identification.regression import Form, Signals
+from sigmahat.identification.spring import knees
 
 T, GAMMA, K = 1e-3, 50.0, 400.0
 FORM = Form(20.0, 50.0, n=4, symmetric=False)

@@ -18,10 +18,9 @@ from sigmahat.joint.curve import CURVE, Branch, curve_text, nearest, polynomial_
 from sigmahat.joint.sheet import Polynomial, start_of, with_knees
 from sigmahat.joint.stored import LearnedLog
 from sigmahat.logs.configuration import read_configuration
-from sigmahat.logs.curve import reaches
+from sigmahat.logs.curve import POINTS, MeasuredPoints, reaches, read_points
 from sigmahat.logs.estimate import Estimate, estimate
 from sigmahat.logs.log import LogInMemory
-from sigmahat.logs.measured import POINTS, MeasuredPoints, read_points
 from sigmahat.logs.readers.formats import open_log
 
 GAIN = 0.02

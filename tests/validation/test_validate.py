@@ -9,7 +9,7 @@ import pytest
 from command_line import Shell, working_in
 from recorded_logs import CONFIGURATION, REGRESSION, Array, awas_log, write_log
 from sigmahat.cli import main
-from sigmahat.validation.agreement import agreement
+from sigmahat.validation.validate import agreement
 
 KNEE = REGRESSION + "prior.B = 0.2\n"
 DURATION = 10.0

@@ -13,8 +13,7 @@ from sigmahat.checks.changes import distance
 from sigmahat.checks.columns import at_rest, columns
 from sigmahat.checks.dynamics import dynamics
 from sigmahat.checks.findings import Checked, Finding, Kind, Proposal, Severity
-from sigmahat.checks.relation import relation
-from sigmahat.checks.slope import slope_of
+from sigmahat.checks.relation import relation, slope_of
 from sigmahat.checks.view import View, view
 from sigmahat.fmi.instance import FmuError, Slave, Value, installed
 from sigmahat.identification.noise import variance
@@ -22,7 +21,7 @@ from sigmahat.identification.quantities import WIDE
 from sigmahat.logs.configuration import PORTS, Configuration
 from sigmahat.logs.data_sheet import absent, exact
 from sigmahat.logs.log import Log, LogError
-from sigmahat.logs.replay import parameters, replay
+from sigmahat.logs.replay import parameters, play
 
 _INERTIA = (Kind.INERTIA, Kind.TORQUE_SCALE)
 _MISFIT = 3.0  # of the model; unmodelled effects of real joints cause up to about 2
@@ -60,8 +59,8 @@ def check(log: Log, configuration: Configuration) -> Checked:
     findings = _swapped(seen) or [_tried(seen, each) for each in _contradictions(seen)]
     # The warnings of the FMU are findings here.
     with Slave(fmu, "check") as slave, slave.only_errors():
-        start = parameters(fmu, configuration)
-        (outputs,) = replay(slave, seen.samples, start, len(seen.samples.values))
+        slave.initialize(parameters(fmu, configuration))
+        (outputs,) = play(slave, seen.samples, len(seen.samples.values))
     if not any(each.severity is Severity.WRONG for each in findings):
         # After a wrong value, the findings of the replay are only consequences of this value.
         findings += _replayed(seen, outputs)
@@ -208,11 +207,9 @@ def gears(configuration: Configuration, every: Mapping[str, Value]) -> Iterator[
         keys = [("motor.gamma", gear), (f"ports.{name}.gear_ratio", gamma)]
         if name == "tau":
             keys.reverse()
-        (key, expected), (other, measured) = keys
-        others = [(other, measured)]
-        yield Finding(
-            Kind.GEAR, Severity.WRONG, key, measured, "", expected, expected, others, name
-        )
+        (key, expected), other = keys
+        what = (key, other[1], "", expected, expected, [other], name)
+        yield Finding(Kind.GEAR, Severity.WRONG, *what)
 
 
 def rests_on(

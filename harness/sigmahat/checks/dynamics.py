@@ -14,7 +14,6 @@ from sigmahat.checks.relation import Relation
 from sigmahat.checks.view import View
 from sigmahat.identification.quantities import WIDE
 from sigmahat.identification.regression import MOTOR
-from sigmahat.logs.configuration import Port
 from sigmahat.logs.units import scale
 
 _MATTERS = 0.05  # of the covered deformation: a smaller error of its zero is left to prior.bias
@@ -113,8 +112,11 @@ def _zero(seen: View, found: Fitted) -> Finding | None:
     half_width = found.spring.half_width(found.fit, zero, pieces)
     if not (half_width < _MATTERS * covered and abs(zero) > max(half_width, _MATTERS * covered)):
         return None
-    ports, moves = seen.configuration.ports, {"q": zero, "theta": -zero}
-    keys = [(f"ports.{n}.zero", _moved(ports[n], n, m)) for n, m in moves.items() if n in ports]
+    keys = [
+        (f"ports.{name}.zero", float(f"{port.zero + angle / scale(name, port):.6g}"))
+        for name, angle in (("q", zero), ("theta", -zero))
+        if (port := seen.configuration.ports.get(name)) is not None
+    ]
     # A zero within the deformations of the log is only a note, because identify sets this zero.
     is_wrong = abs(zero) > covered / 2 and _is_more_than_bias(seen, found, zero)
     if not (is_wrong or found.form.symmetric):
@@ -139,11 +141,6 @@ def _is_more_than_bias(seen: View, found: Fitted, zero: float) -> bool:
         return True
     torque = abs(seen.gamma * found.linear.value[LINEAR] * zero / found.spring.units[0])
     return torque > _STD * float(seen.every["prior.bias"]) * float(seen.every["prior.tau_e"])
-
-
-def _moved(port: Port, name: str, angle: float) -> float:
-    """The zero of a port, so that its values become smaller by an angle [rad]."""
-    return float(f"{port.zero + angle / scale(name, port):.6g}")
 
 
 def _late(seen: View, found: Fitted) -> _Delay | None:

@@ -13,12 +13,10 @@ Proposal = float | bool | str  # a value of a key, as it stands in the configura
 class Severity(Enum):
     """How much a finding matters."""
 
-    WRONG = "wrong"
-    """The configuration contradicts the log."""
+    WRONG = "wrong"  #: The configuration contradicts the log.
     RESTS_ON = "rests on"
     """The result depends on an assumption, and no log can show whether this assumption is right."""
-    NOTE = "note"
-    """Worth knowing; the configuration may be right."""
+    NOTE = "note"  #: Worth knowing; the configuration may be right.
 
 
 class Kind(Enum):
@@ -56,16 +54,12 @@ class Kind(Enum):
 class Finding:
     """One thing that was found."""
 
-    kind: Kind
-    """What was checked."""
-    severity: Severity
-    """How much the finding matters."""
+    kind: Kind  #: What was checked.
+    severity: Severity  #: How much the finding matters.
     key: str
     """The key of the configuration to look at first, as "ports.tau.sign" or "motor.gamma"."""
-    measured: float
-    """What the log shows, in `unit`."""
-    unit: str
-    """Unit of `measured` and `expected`; "" for a number without a unit."""
+    measured: float  #: What the log shows, in `unit`.
+    unit: str  #: Unit of `measured` and `expected`; "" for a number without a unit.
     expected: float | None = None
     """The configured or the usual value, in `unit`; None if no such value exists."""
     proposed: Proposal | None = None
@@ -87,10 +81,8 @@ class Checked:
 
     findings: Sequence[Finding]
     """Errors first, then assumptions that no log can verify, then notes."""
-    ticks: int
-    """Number of ticks of the estimator that were checked."""
-    T: float
-    """Time between ticks [s]."""
+    ticks: int  #: Number of ticks of the estimator that were checked.
+    T: float  #: Time between ticks [s].
 
     def of(self, severity: Severity) -> Sequence[Finding]:
         return [each for each in self.findings if each.severity is severity]

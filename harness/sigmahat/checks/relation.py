@@ -21,10 +21,11 @@ from sigmahat.checks.changes import Change, changes, distance, gear_of
 from sigmahat.checks.columns import step
 from sigmahat.checks.findings import Finding, Kind, Severity
 from sigmahat.checks.motor import LINEAR, Fitted, fitted, gear_error
-from sigmahat.checks.slope import Slope, slope_of
 from sigmahat.checks.view import View
-from sigmahat.identification.regression import is_worse
+from sigmahat.identification.noise import low_pass
+from sigmahat.identification.regression import Signals, is_worse
 from sigmahat.logs.configuration import Port
+from sigmahat.logs.log import Array
 
 PORTS = ("theta", "q")
 _LIKE = math.log(1.5)
@@ -38,6 +39,47 @@ _FARTHEST = 100.0  # beyond this factor, resonance is no cause either
 _BETTER = 0.8  # largest ratio of the squared errors, after to before
 _PRECISE = 0.01  # largest half width of the correction of a gear ratio [1]
 _AS_WELL = 0.25  # tolerance of the logarithm: another factor explains the same slope
+_SLOW = 1.0  # [Hz]
+_ENOUGH = 0.1  # least fraction of slow motion, else the whole motion is used
+_CORRELATED = 0.9
+_RIGID = 0.99  # correlation of motor and link, beyond which the deformation is small beside both
+
+
+@dataclass(frozen=True)
+class Slope:
+    """Slope of q on theta, of the slow motion if the log has any."""
+
+    value: float  # [1]
+    is_slow: bool
+    is_rigid: bool  # whether the deformation is small beside the motion
+
+
+def slope_of(pieces: Sequence[Signals], T: float) -> Slope | None:
+    """Slope of q on theta by total least squares; None if q and theta do not move together."""
+    if not pieces:
+        return None
+    motions = [np.column_stack([p.theta, p.theta + p.phi]) for p in pieces]
+    slow = [_slow(each, T) for each in motions]
+    is_slow = all(each is not None for each in slow)
+    both = np.concatenate(
+        [m - m.mean(axis=0) if s is None else s for m, s in zip(motions, slow, strict=True)]
+    )
+    variances = np.var(both, axis=0)
+    if not np.all(variances > 0):
+        return None
+    # If both are scaled to variance 1, the axis is the diagonal, whatever the units are.
+    correlation = np.corrcoef(both.T)[0, 1]
+    if abs(correlation) < _CORRELATED:
+        return None
+    value = float(np.sign(correlation) * np.sqrt(variances[1] / variances[0]))
+    return Slope(value, is_slow, bool(abs(correlation) > _RIGID))
+
+
+def _slow(motion: Array, T: float) -> Array | None:
+    """The slow part of a motion; None if this part is too small."""
+    motion = motion - motion.mean(axis=0)
+    slow = low_pass(motion, min(_SLOW, 0.1 / T), T)
+    return slow if np.all(np.std(slow, axis=0) > _ENOUGH * np.std(motion, axis=0)) else None
 
 
 @dataclass(frozen=True)
@@ -97,13 +139,9 @@ def _is_sane(here: Relation) -> bool:
     have moved the link while a drive held the motor.
     """
     found = here.fitted
-    if found is None or not _is_determined(found, LINEAR):
+    if found is None or not abs(found.linear.value[LINEAR]) > found.linear.half_width[LINEAR]:
         return False
     return not _is_stiffness_negative(here.seen, found) and _sign_of_motor(found) >= 0
-
-
-def _is_determined(found: Fitted, name: str) -> bool:
-    return abs(found.linear.value[name]) > found.linear.half_width[name]
 
 
 def _likely(seen: View, slope: Slope) -> Change | None:

@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from sigmahat.fmi.unknown_name import unknown
-from sigmahat.guessing.columns import Column, Columns
+from sigmahat.guessing.columns import Clock, Column, Columns
 from sigmahat.guessing.ports import PortGuess, guess_ports
 from sigmahat.guessing.roles import Roles, assign, chosen_roles
 from sigmahat.logs.configuration import PORTS
@@ -64,12 +64,8 @@ def _all_words(columns: Sequence[Column]) -> Mapping[str, Sequence[str]]:
 @dataclass(frozen=True)
 class JointGuess:
     name: str  # name of the joint in the columns; empty if no column names a joint
-    time: str | None
-    """The time column of ports without their own time column; None if rows are T apart."""
-    time_unit: str
-    T: float  # usual time between rows [s]
-    longest_gap: float | None
-    """Longest gap because of single lost rows [s]; None if no rows are lost."""
+    time: str | None  # the time column of ports without their own; None: the log has no times
+    clock: Clock
     ports: Mapping[str, PortGuess]  # guesses of the ports that have a column, in the order of PORTS
 
 
@@ -110,6 +106,4 @@ def _joint(name: str, roles: Roles, columns: Columns) -> JointGuess:
     clocks = {port: role.column.clock for port, role in roles.ports.items()}
     first = [clocks[port] for port in PORTS if port in clocks]
     main = first[0] if first else next(iter(columns.clocks))
-    ports = guess_ports(roles, columns, main)
-    clock = columns.clocks[main]
-    return JointGuess(name, main, clock.unit, clock.interval, clock.longest_gap, ports)
+    return JointGuess(name, main, columns.clocks[main], guess_ports(roles, columns, main))

@@ -3,14 +3,14 @@
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from itertools import accumulate
 
 import tomlkit
 from tomlkit.items import Item, Table
 
 from sigmahat.fmi.instance import installed
-from sigmahat.guessing.columns import TURN, Columns, likely_unit
+from sigmahat.guessing.columns import TURN, Column, Columns, likely_unit
 from sigmahat.guessing.guess import JointGuess
-from sigmahat.guessing.listing import listed
 from sigmahat.guessing.ports import PortGuess
 from sigmahat.logs.configuration import (
     ANOTHER_ROBOT,
@@ -37,6 +37,7 @@ _RANGE = (1.0, 100.0)  # of the set-point
 _GAIN = 0.02  # relative, the start value of the FMU
 _ALIKE = 1.2
 """Largest ratio of similar gear ratios as seen in a log: a soft joint may exceed its motor."""
+_MOST_LISTED, _LONGEST_LIST = 200, 40_000  # columns, and bytes of their lines together
 _HEAD = """\
 Configuration for {log}{joint}, guessed from names and values of its columns.
 Lines with FILL IN need a value of your data sheet; lines with CHECK are less sure than others.
@@ -62,7 +63,7 @@ def write(log: Log, columns: Columns, joints: Mapping[str, JointGuess]) -> str:
     columns  of the log
     joints   of the log, by name; values that are common to all joints are written once
     """
-    lines = "\n".join(listed(log, columns, joints))
+    lines = "\n".join(_listed(log, columns, joints))
     name = "" if len(joints) > 1 else next(iter(joints.values())).name
     head = _HEAD.format(log=log.path.name, joint=name and f", joint {name}", columns=lines)
     if len(joints) > 1:
@@ -71,6 +72,47 @@ def write(log: Log, columns: Columns, joints: Mapping[str, JointGuess]) -> str:
     documents = {name: _document(guess, head) for name, guess in guesses}
     (one, *others) = documents.values()
     return tomlkit.dumps(together(documents) if others else one)
+
+
+def _listed(log: Log, columns: Columns, joints: Mapping[str, JointGuess]) -> Iterator[str]:
+    """A line for each column, but not more lines than fit a configuration."""
+    what = dict.fromkeys(log.columns, "another time")
+    what |= {column.name: _unused(column) for column in columns.signals}
+    first = next(iter(joints.values()))
+    times = (first.time, *(port.time for port in first.ports.values()))
+    what |= dict.fromkeys((time for time in times if time), "time")
+    for name, joint in reversed(list(joints.items())):
+        ports = joint.ports.items()
+        what |= {each.column: f"{name} ports.{port}".strip() for port, each in ports}
+    lines = []
+    for name, samples in log.columns.items():
+        low, high = columns.facts[name].low, columns.facts[name].high
+        span = "" if math.isnan(low) else f", {low:.6g} to {high:.6g}"
+        lines.append(f"  {name}: {samples} samples{span}; {what[name]}")
+    ends = accumulate(len(line.encode()) for line in lines)
+    shown = min(_MOST_LISTED, sum(end < _LONGEST_LIST for end in ends))
+    yield from lines[:shown]
+    if shown < len(lines):
+        yield f"  and {len(lines) - shown} more, left out here"
+
+
+def _unused(column: Column) -> str:
+    """Why a column feeds no port."""
+    meaning, facts = column.meaning, column.facts
+    if facts.text:
+        return "text"
+    if math.isnan(facts.low):
+        return "no number"
+    if not facts.varies:
+        return "constant" if facts.low == facts.high else "a few values only"
+    words = [
+        "reference" if meaning.reference else "",
+        "computed" if meaning.computed else "",
+        "" if meaning.quantity in (None, "other") else meaning.quantity,
+        f"of {' '.join(meaning.joints)}" if meaning.joints and meaning.quantity else "",
+    ]
+    said = " ".join(word for word in words if word)
+    return f"{said}, not used" if said else "not placed"
 
 
 def _with_one_gear(joints: Mapping[str, JointGuess]) -> Mapping[str, JointGuess]:
@@ -120,12 +162,13 @@ def _time(guess: JointGuess) -> Table:
         _hint(table, "no column looks like a time: rows are taken as samplePeriod apart")
     else:
         table.add("column", guess.time)
-        table.add("unit", guess.time_unit)
+        table.add("unit", guess.clock.unit)
     shorter = "[s] interpolate over shorter gaps; else ticks are skipped"
-    if guess.longest_gap is None:
+    if guess.clock.longest_gap is None:
         _hint(table, f"longest_gap = 0.01   # {shorter}")
     else:
-        _add(table, "longest_gap", guess.longest_gap, f"{shorter}. Rows are lost in this log")
+        note = f"{shorter}. Rows are lost in this log"
+        _add(table, "longest_gap", guess.clock.longest_gap, note)
     table.add(tomlkit.nl())
     return table
 
@@ -176,13 +219,14 @@ def _empty_port(name: str) -> Table:
 
 def period_of(guess: JointGuess) -> str:
     """The unit of the sample period, and whether it is plausible."""
-    likely = likely_unit(guess.time_unit, guess.T)
+    unit, T = guess.clock.unit, guess.clock.interval
+    likely = likely_unit(unit, T)
     if likely is None:
         return "[s]"
-    T = guess.T / seconds(guess.time_unit) * seconds(likely)
+    other = T / seconds(unit) * seconds(likely)
     return (
-        f"[s] CHECK: {guess.T:g} s between rows is implausible. If {guess.time} is in {likely}, "
-        f'set time.unit = "{likely}" and samplePeriod = {T:g}'
+        f"[s] CHECK: {T:g} s between rows is implausible. If {guess.time} is in {likely}, "
+        f'set time.unit = "{likely}" and samplePeriod = {other:g}'
     )
 
 
@@ -192,7 +236,7 @@ def _parameters(guess: JointGuess) -> Table:
     if guess.time is None:
         _add(table, "samplePeriod", 0, "[s] FILL IN: time between two rows; the log has no times")
     else:
-        _add(table, "samplePeriod", guess.T, period_of(guess))
+        _add(table, "samplePeriod", guess.clock.interval, period_of(guess))
     _add(table, "method", "FilteredRegression", "or Paper2011, which needs exact motor data")
     sensor = _is_sensor(guess)
     _add(table, "modality", "Sensor" if sensor else "Residual", "Residual, Sensor or Model")

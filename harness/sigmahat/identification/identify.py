@@ -13,16 +13,20 @@ from dataclasses import replace
 import numpy as np
 
 from sigmahat.fmi.instance import Fmu, Slave, Value, installed
-from sigmahat.identification.change import change_of_spring, plain_equations, with_two_springs
 from sigmahat.identification.coherence import coherent_range, is_hidden
-from sigmahat.identification.knees import knees
 from sigmahat.identification.motor import KnownInertia, fit_motor
 from sigmahat.identification.noise import TorqueNoise, count, is_only_noise, low_pass
 from sigmahat.identification.quantities import WIDE, Identified, Quantity
 from sigmahat.identification.regression import Signals, shortest, signals_of
+from sigmahat.identification.spring import (
+    change_of_spring,
+    knees,
+    plain_equations,
+    with_two_springs,
+)
 from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.log import Array, Log, LogError
-from sigmahat.logs.replay import parameters, replay
+from sigmahat.logs.replay import parameters, play
 from sigmahat.logs.sampling import Samples, sample, stretches
 
 _LONGEST = 600.0  # [s] of a log that are used
@@ -231,7 +235,8 @@ def _best_V_a(
     for V_a in _V_A:
         with Slave(fmu, "filter") as slave:
             filtered = {"method": "Paper2011", "filter.V_a": V_a, "modality": "Residual"}
-            (outputs,) = replay(slave, only, {**start, **filtered}, len(theta))
+            slave.initialize({**start, **filtered})
+            (outputs,) = play(slave, only, len(theta))
             difference = outputs["theta_dot"][settled] - reference[settled]
             errors[V_a] = float(np.mean(difference**2))
     return min(errors, key=errors.__getitem__)

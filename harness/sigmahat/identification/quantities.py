@@ -19,8 +19,7 @@ prior of 0, the start value of prior.B, as exact; with 1 it accepts up to 4 time
 class Quantity:
     """One identified parameter with its 95 % interval, value +- half_width."""
 
-    value: float
-    """In its unit."""
+    value: float  #: In its unit.
     half_width: float
     """Half the width of the interval, in the same unit; inf if the motion does not show it."""
     unit: str
@@ -48,39 +47,27 @@ class Identified:
 
     quantities: Mapping[str, Quantity]
     """B, D_theta, tau_coulomb, zero of the deformation, and torque_constant if it was asked for."""
-    symmetric: bool
-    """For rls.symmetric."""
-    n: int
-    """For rls.n."""
-    m: int
-    """For rls.m: the order whose error, in a cross-validation, is the least."""
-    tau_variance: float
-    """Variance of the noise of the torque [(N.m)2]."""
-    theta_variance: float
-    """Variance of the noise of the motor position, rounding included [rad2]."""
+    symmetric: bool  #: For rls.symmetric.
+    n: int  #: For rls.n.
+    m: int  #: For rls.m: the order whose error, in a cross-validation, is the least.
+    tau_variance: float  #: Variance of the noise of the torque [(N.m)2].
+    theta_variance: float  #: Variance of the noise of the motor position, rounding included [rad2].
     bandwidth: float
     """Bandwidth of a filter that balances both noises, or up to which the deformation is coherent
     with the torque, if that is lower [rad/s]."""
-    coherent: float
-    """Frequency above which the deformation is noise [Hz]; inf if there is none."""
-    V_a: float
-    """For filter.V_a [rad2/s4]."""
-    phi: float
-    """Largest magnitude of the deformation, from its zero [rad]."""
+    coherent: float  #: Frequency above which the deformation is noise [Hz]; inf if there is none.
+    V_a: float  #: For filter.V_a [rad2/s4].
+    phi: float  #: Largest magnitude of the deformation, from its zero [rad].
     zero: float
     """Deformation at which the spring has no torque [rad], where it is surely not 0; else 0."""
     knees: tuple[float, ...]
     """Up to two deformations at which the slope of the spring changes at once [rad]."""
-    set_point: float
-    """Largest magnitude of the set-point [1]."""
+    set_point: float  #: Largest magnitude of the set-point [1].
     torque: float
     """Largest magnitude of the torque of the motor after its gear, or of the spring [N.m]."""
-    B: float
-    """That of the configuration [kg.m2]."""
-    D_theta: float
-    """That of the configuration [N.m.s/rad]."""
-    notes: Sequence[str]
-    """What had to be done to the samples of the log, in sentences."""
+    B: float  #: That of the configuration [kg.m2].
+    D_theta: float  #: That of the configuration [N.m.s/rad].
+    notes: Sequence[str]  #: What had to be done to the samples of the log, in sentences.
 
 
 def as_dict(identified: Identified) -> dict[str, Any]:

@@ -83,8 +83,7 @@ class Form:
     exp(-|theta'/v|^delta) (Armstrong-Helouvry, Dupont and Canudas de Wit, Automatica 30:1083-1138,
     1994)."""
     stribeck_exponent: float = 2.0  # delta, usually 1 or 2
-    delay: bool = False
-    """Whether the torque may be late: tau(t - delay) = tau(t) - delay tau'(t)."""
+    delay: bool = False  # whether the torque may be late: tau(t - delay) = tau(t) - delay tau'(t)
 
     def names(self, sensor: bool) -> list[str]:
         """Names of the columns. With a torque sensor the polynomial is replaced by a gain."""

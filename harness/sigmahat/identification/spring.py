@@ -1,12 +1,31 @@
-"""The polynomial of the spring in a fit: where it is zero, and its largest torque."""
+"""The spring in a fit of the motor equation: the zero and the largest torque of its polynomial.
+
+Also springs that are no polynomial: one that changes at some time in the log, and one whose slope
+changes at once at some deformations, as in harmonic drives.
+"""
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import combinations
 
 import numpy as np
 
-from sigmahat.identification.regression import CONSTANT, Fit, Form, Signals
+from sigmahat.identification.regression import (
+    CONSTANT,
+    WIDEST,
+    Equations,
+    Fit,
+    Form,
+    Signals,
+    equations,
+    eta,
+    extra,
+    factor,
+    fit,
+    is_worse,
+    units,
+)
 from sigmahat.joint.sheet import powers_of_phi
 from sigmahat.logs.log import Array
 
@@ -103,3 +122,148 @@ class Spring:
 
 def _mean_set_point(pieces: Sequence[Signals]) -> float:
     return float(np.mean(np.concatenate([piece.set_point for piece in pieces])))
+
+
+_PLACES = 16  # steps in which the time is looked for, then in smaller ones around the best
+_EXPLAINED = 0.3
+"""Largest squared error of two springs, over that of one. A change by a fifth leaves 0.04; without
+a change, at least 0.6 was left on 38 logs with hysteresis, backlash and friction of other forms."""
+_ORDER = 4  # powers of the torque of each of the two springs
+
+
+def plain_equations(pieces: Sequence[Signals], T: float, gamma: float, f_0: float) -> Equations:
+    """The equations of one spring with even and odd powers, without a set-point.
+
+    T, gamma and f_0 as for fit_motor().
+    """
+    form = Form(f_0, min(2.5 * f_0, WIDEST / T), n=_ORDER, symmetric=False)
+    return equations(pieces, T, gamma, form)
+
+
+def change_of_spring(system: Equations, pieces: Sequence[Signals]) -> int | None:
+    """The sample from which on another spring explains the log far better; None if none does, or
+    if the log has a set-point. With one spring, such a change looks like inertia and friction.
+
+    Samples are counted over all pieces, of which these are the plain equations.
+    """
+    if any(np.ptp(piece.set_point) > 0 for piece in pieces):
+        return None
+    scale = system.scale
+    R = system.R / np.append(np.where(scale > 0, scale, 1.0), 1.0)
+    spring = [system.names.index(name) for name in eta(_ORDER, 1)]
+
+    def error(place: int) -> float:
+        """Sum of the squared errors with another spring from this block on."""
+        before, later = (factor(each.reshape(-1, R.shape[2])) for each in (R[:place], R[place:]))
+        one, other = np.concatenate([before, later]), np.concatenate([0 * before, later])
+        both, y = np.column_stack([one[:, :-1], other[:, spring]]), one[:, -1]
+        left = y - both @ np.linalg.lstsq(both, y, rcond=1e-10)[0]
+        return float(left @ left)
+
+    blocks = step = len(system.rows)
+    best = 0
+    while step > 1:
+        step = max(1, step // _PLACES)
+        near = range(best - _PLACES * step, best + _PLACES * step + 1, step)
+        best = min((n for n in near if 0 < n < blocks), key=error)
+    if not error(best) < _EXPLAINED * error(blocks):
+        return None
+    return int(system.rows[:best].sum())
+
+
+def with_two_springs(pieces: Sequence[Signals], first: int) -> list[Signals]:
+    """Pieces with regressors for what the spring has in addition from this sample on."""
+    unit, begin, found = units(pieces)[0], 0, []
+    for piece in pieces:
+        later = np.arange(begin, begin + len(piece.phi)) >= first
+        powers: Array = np.vander(piece.phi / unit, _ORDER, increasing=True)
+        found.append(replace(piece, extra=powers * later[:, None]))
+        begin += len(piece.phi)
+    return found
+
+
+_SHARES = np.linspace(0.1, 0.9, 17)  # of the usual deformation: places that are compared
+_NOT_RARE = 0.995  # quantile of the deformation that is not rare
+_FINER = np.linspace(-0.04, 0.04, 9)  # added to the best ones, for places near them
+_KNEES_APART = 0.1  # least distance of two knees
+_LEAST_CHANGE = 0.25  # of the slope at a knee, over that at the other one
+_MOST = 100_000  # samples that are used
+
+
+def knees(
+    pieces: Sequence[Signals], T: float, gamma: float, form: Form, zero: float
+) -> tuple[float, ...]:
+    """Places of up to two knees, from the zero [rad], in increasing order.
+
+    The equation of the motor gets a column max(|phi| - k, 0) sign(phi) for each knee k. It is
+    linear in its coefficients: the columns of many places are filtered once, and their equations
+    are solved for every place and pair of places. Beside them they have the polynomial, and the
+    friction by load of the estimator: without this friction, the places are less exact.
+
+    T      time between samples [s]
+    gamma  gear ratio
+    form   polynomial of the estimator, and filters
+    zero   deformation at which the spring has no torque [rad]
+    """
+    used, form = _first(pieces), replace(form, load_friction=True)
+    phi = np.abs(np.concatenate([piece.phi for piece in used]) - zero)
+    usual = float(np.quantile(phi, _NOT_RARE))
+
+    def beyond(shares: Array) -> Equations:
+        places = shares * usual
+        with_knees = [replace(p, extra=_beyond(p.phi - zero, places)) for p in used]
+        return equations(with_knees, T, gamma, form)
+
+    coarse = beyond(_SHARES)
+    best, found = _least(coarse, _SHARES, 0)
+    for number in (1, 2):
+        near, _ = _least(coarse, _SHARES, number)
+        shares = np.unique(np.add.outer(near, _FINER))
+        better, other = _least(beyond(shares), shares, number)
+        if not is_worse(found, other) or _is_one_knee(other):
+            break
+        best, found = better, other
+    return tuple((best * usual).tolist())
+
+
+def _least(e: Equations, shares: Array, number: int) -> tuple[Array, Fit]:
+    """So many of the shares with the least error, and the fit with their columns alone."""
+    own = e.names[: len(e.names) - len(shares)]
+
+    def fitted(chosen: Sequence[int]) -> tuple[Array, Fit]:
+        return shares[list(chosen)], fit(e.only([*own, *map(extra, chosen)]))
+
+    def error(each: tuple[Array, Fit]) -> float:
+        found = float(np.sum(each[1].squares))
+        return found if math.isfinite(found) else math.inf
+
+    tried = combinations(range(len(shares)), number)
+    return min((fitted(c) for c in tried if _are_apart(shares[list(c)])), key=error)
+
+
+def _are_apart(shares: Array) -> bool:
+    return bool(np.all(np.diff(shares) >= _KNEES_APART))
+
+
+def _is_one_knee(found: Fit) -> bool:
+    """Whether the smaller one of two changes of the slope only corrects the place of the other."""
+    changes = [abs(value) for name, value in found.value.items() if name.startswith("extra")]
+    return min(changes) < _LEAST_CHANGE * max(changes)
+
+
+def _beyond(phi: Array, places: Array) -> Array:
+    beyond: Array = phi[:, None] - np.clip(phi[:, None], -places, places)
+    return beyond
+
+
+def _first(pieces: Sequence[Signals]) -> list[Signals]:
+    """The first pieces without a sensor, up to a number of samples: more show the place no better.
+
+    With the torque of a sensor, the equation has no polynomial.
+    """
+    used, left = [], _MOST
+    for piece in pieces:
+        if left > 0:
+            used.append(replace(piece, tau_e=None).up_to(left))
+            left -= len(piece.theta)
+    return used

@@ -24,7 +24,7 @@ from sigmahat.logs.configuration import (
     Port,
     read_document,
 )
-from sigmahat.logs.units import factor
+from sigmahat.logs.units import scale
 
 _ABOVE = 1.4
 """regression.bandwidth over the balance of the noises: it costs no accuracy, and follows faster."""
@@ -105,7 +105,8 @@ def update(document: tomlkit.TOMLDocument, found: Identified, joint: str = "") -
         joints.set_item(own, ("ports", "tau", "torque_constant"), item)
         written.append("ports.tau.torque_constant")
     if found.zero and "q" in every["ports"]:
-        zero = tomlkit.item(_moved_zero(every["ports"]["q"].unwrap(), found.zero))
+        link = Port(**every["ports"]["q"].unwrap())
+        zero = tomlkit.item(float(f"{link.zero + found.zero / scale('q', link):.9g}"))
         joints.set_item(own, ("ports", "q", "zero"), zero)
         written.append("ports.q.zero")
     own["identified"] = _record(found)
@@ -154,13 +155,6 @@ def _wide_priors(found: Identified, comments: Mapping[str, str]) -> dict[str, fl
         largest = max(abs(end) for end in tau_coulomb.interval)
         priors["prior.tau_coulomb"] = largest if math.isfinite(largest) else ANY_COULOMB
     return priors
-
-
-def _moved_zero(port: Mapping[str, Any], zero: float) -> float:
-    """The zero of [ports.q], moved by an angle of the link [rad]."""
-    read = Port(**port)
-    angle = read.sign * factor("q", read) / read.gear_ratio
-    return float(f"{read.zero + zero / angle:.9g}")
 
 
 def _remove_what_is_not_known(document: tomlkit.TOMLDocument, joint: str) -> None:

@@ -28,18 +28,14 @@ _NEAR = 0.25
 class Branch:
     """The curve at one set-point. Arrays are of one size, in the order of the deformation."""
 
-    set_point: float
-    """[1]"""
+    set_point: float  #: [1]
     reach: Range
     """Range of the measured deformation at this set-point [rad]; outside, the curve is a guess."""
-    phi: Array
-    """Deformation [rad], from below this range to above this range."""
-    tau_e: Array
-    """Flexibility torque [N.m]"""
+    phi: Array  #: Deformation [rad], from below this range to above this range.
+    tau_e: Array  #: Flexibility torque [N.m]
     tau_e_std: Array | None
     """Standard deviation of tau_e [N.m], from the estimator; None if the method has none."""
-    sigma: Array
-    """Stiffness [N.m/rad]"""
+    sigma: Array  #: Stiffness [N.m/rad]
     sigma_std: Array | None
     """Standard deviation of the stiffness [N.m/rad], or None like tau_e_std."""
 
@@ -61,8 +57,7 @@ class Branch:
 class Curve:
     """The torque and stiffness that an estimator has learned from a log."""
 
-    polynomial: Polynomial
-    """Polynomial of the torque."""
+    polynomial: Polynomial  #: Polynomial of the torque.
     branches: Sequence[Branch]
     """A branch per set-point, in increasing order; one for a fixed spring; empty: no data."""
 

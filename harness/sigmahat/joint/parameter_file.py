@@ -184,8 +184,7 @@ _WORDS = """
     stream then true type when while within
     case catch continue global otherwise parfor persistent spmd switch try
 """
-_RESERVED = frozenset(_WORDS.split())
-"""Words of Modelica and, in the last line, of MATLAB."""
+_RESERVED = frozenset(_WORDS.split())  # words of Modelica and, in the last line, of MATLAB
 
 
 def _identifier(name: str) -> None:

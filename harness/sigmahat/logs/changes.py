@@ -1,6 +1,6 @@
 """Changes of the stiffness that the estimator detected: when, and how large."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -63,12 +63,7 @@ class Changes:
         self._eta: NDArray[np.float64] | None = None  # of the last confident tick since a change
         self._at = 0.0, 0.0  # deformation and set-point of the last change
         self._before: float | None = None  # the stiffness at this point
-        self._found: list[StiffnessChange] = []
-
-    @property
-    def found(self) -> Sequence[StiffnessChange]:
-        """All changes until now."""
-        return self._found
+        self.found: list[StiffnessChange] = []  # all changes until now
 
     def add(self, outputs: Mapping[str, NDArray[Any]]) -> None:
         """Adds the outputs of the next ticks."""
@@ -81,13 +76,13 @@ class Changes:
                 self._at = float(outputs["phi"][begin]), float(outputs["setPoint"][begin])
                 self._before = None if self._eta is None else self._stiffness(self._eta)
                 self._eta, self._followed = None, False
-                self._found.append(StiffnessChange(self._T * (self._ticks + begin), None))
+                self.found.append(StiffnessChange(self._T * (self._ticks + begin), None))
             inside = confident[(confident >= begin) & (confident < end)]
             if len(inside):
                 self._eta, self._followed = eta[inside[-1]], True
                 if self._before is not None and self._before > 0:
                     relative = self._stiffness(self._eta) / self._before - 1
-                    self._found[-1] = StiffnessChange(self._found[-1].t, relative)
+                    self.found[-1] = StiffnessChange(self.found[-1].t, relative)
         self._ticks, self._age = self._ticks + len(age), float(age[-1])
 
     def _stiffness(self, eta: NDArray[np.float64]) -> float:

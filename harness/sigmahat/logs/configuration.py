@@ -64,24 +64,18 @@ class Port:
 
     __pydantic_config__ = _NO_OTHER_KEYS
 
-    column: str = ""
-    """Name of the column in the log."""
+    column: str = ""  #: Name of the column in the log.
     value: Number | None = None
     """Constant value of the port in its unit, instead of a column, as for a locked link."""
     time: str | None = None
     """Column with the times of this port, if they differ from [time]; in the unit of [time]."""
-    unit: str | None = None
-    """Unit of the column; by default, the unit of the port."""
-    sign: Sign = 1.0
-    """1 or -1."""
-    zero: Number = 0.0
-    """Value of the column at the zero of the port, in the unit of the column."""
+    unit: str | None = None  #: Unit of the column; by default, the unit of the port.
+    sign: Sign = 1.0  #: 1 or -1.
+    zero: Number = 0.0  #: Value of the column at the zero of the port, in the unit of the column.
     gear_ratio: NotZero = 1.0
     """For an encoder on the motor's shaft, or a torque measured after the gear."""
-    counts_per_turn: NotZero | None = None
-    """For the unit counts."""
-    torque_constant: NotZero | None = None
-    """For a current [N.m/A]."""
+    counts_per_turn: NotZero | None = None  #: For the unit counts.
+    torque_constant: NotZero | None = None  #: For a current [N.m/A].
     mm_per_turn: NotZero | None = None
     """For a length: travel per turn of the motor. If not given, the port takes the number of mm."""
     scale: NotZero | None = None
@@ -100,8 +94,7 @@ class Time:
 
     column: str | None = None
     """Name of the column in the log; if not given, rows are samplePeriod apart."""
-    unit: str = "s"
-    """Unit of the column."""
+    unit: str = "s"  #: Unit of the column.
     longest_gap: NotZero | None = None
     """Longest time between two samples over which values are interpolated [s]."""
 
@@ -110,18 +103,13 @@ class Time:
 class Configuration:
     """The contents of a configuration file."""
 
-    path: Path
-    """The file."""
-    time: Time
-    """When the samples were taken."""
-    ports: Mapping[str, Port]
-    """Ports by input of `StiffnessEstimator`."""
-    parameters: Mapping[str, Value]
-    """Start values of `StiffnessEstimator`, by its names."""
+    path: Path  #: The file.
+    time: Time  #: When the samples were taken.
+    ports: Mapping[str, Port]  #: Ports by input of `StiffnessEstimator`.
+    parameters: Mapping[str, Value]  #: Start values of `StiffnessEstimator`, by its names.
     symmetric_chosen: bool = False
     """Whether identify chose rls.symmetric: the next run may choose again."""
-    joint: str = ""
-    """Name of the joint in a file of several joints."""
+    joint: str = ""  #: Name of the joint in a file of several joints.
 
     def need_ports(self, modality: str) -> None:
         """Raises LogError if a port is missing that the modality needs."""

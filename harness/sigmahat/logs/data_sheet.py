@@ -13,7 +13,6 @@ from sigmahat.fmi.instance import Fmu, Slave, Value
 from sigmahat.fmi.sample_loop import Recorder
 from sigmahat.joint import sheet
 from sigmahat.joint.curve import NORMAL_95, Curve
-from sigmahat.joint.start_values import start_values
 from sigmahat.joint.stored import FmuId, Range
 from sigmahat.logs.job import Replay
 
@@ -66,8 +65,10 @@ def data_sheet(replay: Replay, curve: Curve) -> sheet.Sheet:
     """The sheet of what an estimator has learned at the end of a replay, and its curve."""
     slave, every, configuration = replay.slave, replay.every, replay.configuration.path
     last, doubt = replay.statistics.last, replay.statistics.last_doubt
-    start = {**start_values(slave, every), **sheet.start_of(curve.polynomial)}
+    start = {**sheet.start_values(slave, every), **sheet.start_of(curve.polynomial)}
     claims = replay.method == "FilteredRegression"
+    sigma, half = last["sigma"], NORMAL_95 * last["sigma_std"]
+    interval = (sigma - half, sigma + half) if claims else None
     return sheet.Sheet(
         format=sheet.FORMAT.name,
         version=sheet.FORMAT.version,
@@ -80,7 +81,7 @@ def data_sheet(replay: Replay, curve: Curve) -> sheet.Sheet:
         ),
         method=replay.method,
         modality=str(every["modality"]),
-        at_the_end=_point(last, claims),
+        at_the_end=sheet.Stiffness(last["phi"], last["setPoint"], sigma, interval),
         confident=doubt == "None",
         doubt=doubt,
         misfit=last["misfit"],
@@ -96,12 +97,6 @@ def data_sheet(replay: Replay, curve: Curve) -> sheet.Sheet:
         start_values=start,
         check=_check(slave.fmu, start),
     )
-
-
-def _point(outputs: Mapping[str, float], claims: bool) -> sheet.Stiffness:
-    sigma, half = outputs["sigma"], NORMAL_95 * outputs["sigma_std"]
-    interval = (sigma - half, sigma + half) if claims else None
-    return sheet.Stiffness(outputs["phi"], outputs["setPoint"], sigma, interval)
 
 
 def _points(curve: Curve) -> list[sheet.Stiffness]:

@@ -25,12 +25,11 @@ from sigmahat.joint.curve import (
 )
 from sigmahat.logs.changes import StiffnessChange
 from sigmahat.logs.configuration import Configuration
-from sigmahat.logs.curve import Answer
+from sigmahat.logs.curve import POINTS, Answer, write_points
 from sigmahat.logs.data_sheet import MOTOR, UNITS, absent, data_sheet, exact, priors
 from sigmahat.logs.job import Replay
 from sigmahat.logs.learned import LEARNED, read_learned, write_learned
 from sigmahat.logs.log import Log
-from sigmahat.logs.measured import POINTS, write_points
 from sigmahat.logs.output import REPLAYED, EstimateWriter, Replayed
 from sigmahat.logs.replay import OUTPUTS, coefficients
 
@@ -41,36 +40,25 @@ _MOTOR = ("D_theta_hat", "B_hat", "tau_coulomb_hat")
 class Estimate:
     """The result of a replay in short."""
 
-    log: Path
-    """The file."""
-    ticks: int
-    """Number of ticks of the estimator over the log."""
-    skipped: int
-    """Ticks without an estimate: a measurement was missing."""
-    T: float
-    """Time between ticks [s]."""
-    parameters: dict[str, Value]
-    """Parameters of the estimator by name, without rls.eta_0."""
-    sigma: float
-    """Stiffness at the end [N.m/rad]."""
-    sigma_std: float
-    """Standard deviation of sigma, from the method [N.m/rad]."""
+    log: Path  #: The file.
+    ticks: int  #: Number of ticks of the estimator over the log.
+    skipped: int  #: Ticks without an estimate: a measurement was missing.
+    T: float  #: Time between ticks [s].
+    parameters: dict[str, Value]  #: Parameters of the estimator by name, without rls.eta_0.
+    sigma: float  #: Stiffness at the end [N.m/rad].
+    sigma_std: float  #: Standard deviation of sigma, from the method [N.m/rad].
     confident: float
     """Fraction of the ticks in the second half at which the estimator was confident."""
     doubt: Mapping[str, float]
     """Fraction of the ticks in the second half without confidence, by reason: items of `doubt`."""
-    misfit: float
-    """Misfit of the model at the end [1]; 1 if the model holds."""
-    sigma_range: tuple[float, float]
-    """Minimum and maximum in the second half [N.m/rad]."""
+    misfit: float  #: Misfit of the model at the end [1]; 1 if the model holds.
+    sigma_range: tuple[float, float]  #: Minimum and maximum in the second half [N.m/rad].
     tau_e_range: tuple[float, float]
     """Minimum and maximum of the fitted torque in the second half [N.m]."""
     phi_range: tuple[float, float]
     """Minimum and maximum of the deformation in the second half [rad]."""
-    epsilon_rms: float
-    """RMS of the prediction error of the torque in the second half [N.m]."""
-    eta: Sequence[Sequence[float]]
-    """Coefficients at the end, [size: rls.n x rls.m], (21)."""
+    epsilon_rms: float  #: RMS of the prediction error of the torque in the second half [N.m].
+    eta: Sequence[Sequence[float]]  #: Coefficients at the end, [size: rls.n x rls.m], (21).
     motor: dict[str, float]
     """Motor data that the method FilteredRegression estimated, at the end, by output of the FMU."""
     joint: dict[str, float]
@@ -79,14 +67,10 @@ class Estimate:
     """Relative change of the stiffness per relative change of the gain of the torque [1]."""
     doubt_at_end: str
     """Reason for doubt at the last tick: item of `doubt`; "None" if the estimator was confident."""
-    curve: Curve
-    """Torque and stiffness against the deformation."""
-    changes: Sequence[StiffnessChange]
-    """Changes that were detected."""
-    notes: Sequence[str]
-    """Sentences about the processing of the samples of the log."""
-    learned_from: Sequence[str] = ()
-    """Logs from which the estimator has learned before this log."""
+    curve: Curve  #: Torque and stiffness against the deformation.
+    changes: Sequence[StiffnessChange]  #: Changes that were detected.
+    notes: Sequence[str]  #: Sentences about the processing of the samples of the log.
+    learned_from: Sequence[str] = ()  #: Logs from which the estimator has learned before this log.
     series: Series | None = None
     """The outputs at each tick; None if they were written into a folder."""
 

@@ -10,10 +10,9 @@ from sigmahat.fmi.instance import Slave
 from sigmahat.joint.stored import LearnedLog, Range
 from sigmahat.logs.changes import Changes
 from sigmahat.logs.configuration import Configuration
-from sigmahat.logs.curve import Answer, curve
+from sigmahat.logs.curve import NEEDED, Answer, curve, points_of, shown_points, spread
 from sigmahat.logs.learned import Learned, go_on
 from sigmahat.logs.log import Array, Log
-from sigmahat.logs.measured import NEEDED, points_of, shown_points, spread
 from sigmahat.logs.replay import OUTPUTS, parameters, play
 from sigmahat.logs.sampling import sample
 
@@ -125,13 +124,9 @@ class Replay:
         self.statistics = ReplayStatistics(len(self.samples.values))
         self.changes = Changes(self.every, self.samples.T)
         """Changes of the stiffness in the replayed part of the log."""
+        self.method = str(self.every["method"])  # method of the estimator
         self.logs = [] if learned is None else list(learned.logs)
         """Logs from which the estimator has learned; at the end also the present log."""
-
-    @property
-    def method(self) -> str:
-        """Method of the estimator."""
-        return str(self.every["method"])
 
     def run(
         self,

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from sigmahat.joint import curve as joint
 from sigmahat.joint.curve import NORMAL_95
-from sigmahat.logs.measured import MeasuredPoints
+from sigmahat.logs.curve import MeasuredPoints
 from sigmahat.plotting.panels import COLORS, TRUE, Curve, Panel
 from sigmahat.plotting.style import QUANTITIES, around, limits, plain_axis, with_margin
 
@@ -89,8 +89,7 @@ class Estimate:
     """The stiffness of one estimator."""
 
     label: str
-    signals: Mapping[str, str]
-    """Names of its signals by variable, sigma, sigma_1, sigma_2."""
+    signals: Mapping[str, str]  #: Names of its signals by variable, sigma, sigma_1, sigma_2.
 
 
 _QUANTITIES: Mapping[tuple[str, str], Mapping[str, str]] = {

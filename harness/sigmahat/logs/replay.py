@@ -63,24 +63,14 @@ def parameters(fmu: Fmu, configuration: Configuration) -> dict[str, Value]:
         raise LogError(f"{configuration.path}: {error}") from error
 
 
-def replay(
-    slave: Slave, samples: Samples, start: Mapping[str, Value], chunk: int
-) -> Iterator[dict[str, NDArray[Any]]]:
-    """Initialises the estimator, and yields its outputs by name, a chunk of ticks at a time.
-
-    Raises FmuError if the FMU refuses a value.
-    """
-    slave.initialize(start)
-    return play(slave, samples, chunk)
-
-
 def play(
     slave: Slave, samples: Samples, chunk: int, t_0: float = 0.0, more: Sequence[str] = ()
 ) -> Iterator[dict[str, NDArray[Any]]]:
-    """The same for an estimator that has reached the time t_0 [s].
+    """Yields the outputs of an initialised estimator by name, a chunk of ticks at a time.
 
-    The sample at t_0 + t_k is the input of the tick at that time; ports that are not configured
-    keep their values, which are 0 at the start and after a gap.
+    The estimator has reached the time t_0 [s]. The sample at t_0 + t_k is the input of the tick at
+    that time; ports that are not configured keep their values, which are 0 at the start and after
+    a gap.
 
     more  Real outputs that are recorded besides OUTPUTS
     """

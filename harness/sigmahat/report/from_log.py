@@ -29,9 +29,9 @@ from sigmahat.joint.sheet import Sheet
 from sigmahat.logs import estimate as estimation
 from sigmahat.logs.changes import detected
 from sigmahat.logs.configuration import Configuration
+from sigmahat.logs.curve import POINTS, MeasuredPoints, read_points
 from sigmahat.logs.estimate import JOINTS
 from sigmahat.logs.log import Log
-from sigmahat.logs.measured import POINTS, MeasuredPoints, read_points
 from sigmahat.logs.output import REPLAYED, EstimateTable, Replayed
 from sigmahat.logs.panels import (
     Estimate,
@@ -96,11 +96,11 @@ def from_log(folder: Path) -> Contents:
         drawn = signals.without("sigma_std")  # the method gives no interval
     reduced = reduce(t, drawn)
     marks = t[detected(signals["change_age"], signals["confident"].astype(bool))].tolist()
-    findings = answer.replayed.findings
+    log = answer.replayed
     tables = [
         *([curve_table(answer.curve)] if answer.curve.branches else []),
         found_table(answer.sheet),
-        *([] if findings is None else [findings_table(findings)]),
+        *([] if log.findings is None else [findings_table(log.findings)]),
         _estimates(signals, used),
         _doubts(table.doubts()),
         estimator_table(answer.sheet),
@@ -109,7 +109,9 @@ def from_log(folder: Path) -> Contents:
         f"Log: {folder.resolve().name}",
         [
             _origin(answer, folder),
-            f"{len(used)} rows over {t[-1] - t[0]:.6g} s; {_skipped(answer.replayed)}",
+            # A gap in the log has ticks, but no rows.
+            f"{len(used)} rows over {t[-1] - t[0]:.6g} s; "
+            f"{log.skipped} of {log.ticks} ticks of {log.T:g} s skipped",
             *(["Dotted lines: changes of the stiffness, see Samples."] if marks else []),
         ],
         tables,
@@ -120,7 +122,7 @@ def from_log(folder: Path) -> Contents:
         ],
         headline=headline(answer.curve, answer.sheet.doubt),
         answer=list(curve_panels(answer.curve, answer.points)),
-        notes=[*answer.replayed.notes, *sampling(reduced)],
+        notes=[*log.notes, *sampling(reduced)],
         every=reduced.every if reduced.bucket > 1 else None,
         marks=marks,
     )
@@ -176,11 +178,6 @@ def _origin(answer: _Answer, folder: Path) -> str:
     made = datetime.fromtimestamp((folder / REPLAYED.file).stat().st_mtime).astimezone()
     version, source = answer.sheet.sigmahat, answer.sheet.configuration.file
     return f"{answer.replayed.log} with {source}; sigmahat {version}, {made:%Y-%m-%d %H:%M %Z}"
-
-
-def _skipped(replayed: Replayed) -> str:
-    """Number of skipped ticks, as in `estimate`. A gap in the log has ticks, but no rows."""
-    return f"{replayed.skipped} of {replayed.ticks} ticks of {replayed.T:g} s skipped"
 
 
 def findings_table(findings: Sequence[tuple[str, str]]) -> TextTable:

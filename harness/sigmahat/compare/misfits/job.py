@@ -17,7 +17,7 @@ from sigmahat.compare.misfits.conditions import CONDITIONS, Condition
 from sigmahat.compare.misfits.experiment import JOINTS, Experiment, Joint, draw
 from sigmahat.compare.misfits.motion import Motion, run
 from sigmahat.fmi.instance import Slave, Value, installed
-from sigmahat.logs.replay import replay
+from sigmahat.logs.replay import play
 from sigmahat.logs.sampling import Samples
 from sigmahat.runs.engine import Progress, run_all
 
@@ -171,8 +171,8 @@ def estimate(experiment: Experiment, motion: Motion, torque_gain: float) -> Scor
     values = np.column_stack(list(motion.measured.values()))
     samples = Samples(experiment.T, names, values, np.arange(len(values), dtype=np.int32), ())
     with Slave(installed(ESTIMATOR), "FilteredRegression") as slave:
-        start = settings(experiment, torque_gain)
-        (found,) = replay(slave, samples, start, len(values))
+        slave.initialize(settings(experiment, torque_gain))
+        (found,) = play(slave, samples, len(values))
     t = experiment.T * np.arange(len(values))
     judged = t >= experiment.rest + SETTLED
     return score(
