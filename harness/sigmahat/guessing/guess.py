@@ -21,10 +21,7 @@ _OF_A_JOINT = ("position", "torque", "current", None)
 
 
 def joints_of_log(columns: Sequence[Column], T: float) -> dict[str, Roles]:
-    """The joints of a log by name; a single joint is "" if no column names a joint.
-
-    T  time between the samples of the windows of the columns [s]
-    """
+    """The joints of a log by name, a single joint "" if no column names one; T as for assign()."""
     placed = [each for each in columns if each.meaning.quantity in _OF_A_JOINT]
     of_joints = {each.name: each.meaning.joints for each in placed}
     for groups in (_groups(placed, _all_words(placed)), _groups(placed, of_joints)):

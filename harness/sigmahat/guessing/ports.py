@@ -57,10 +57,7 @@ class PortGuess:
 
 
 def guess_ports(roles: Roles, columns: Columns, main: str | None) -> dict[str, PortGuess]:
-    """The guess for every port that has a column.
-
-    main  the time column of the joint
-    """
+    """The guess for every port that has a column; main is the time column of the joint."""
     ports = {port: _plain(port, role, main) for port, role in roles.ports.items()}
     angles = {port: roles.ports[port].column for port in ("theta", "q") if port in ports}
     for port, column in angles.items():

@@ -81,10 +81,7 @@ def _named(column: Column) -> float:
 
 
 def chosen_roles(columns: Mapping[str, Column], T: float) -> Roles:
-    """The roles of columns that the user has chosen, by port.
-
-    T  time between the samples of the windows of the columns [s]
-    """
+    """The roles of columns that the user has chosen, by port; T as for assign()."""
     ports = {port: Role(column, "chosen") for port, column in columns.items()}
     return Roles(ports, _drive(ports, T))
 
@@ -226,7 +223,11 @@ def _setting(columns: Sequence[Column], ports: Mapping[str, Role]) -> dict[str, 
         each
         for each in columns
         if each.meaning.quantity in ("position", None)
-        and (_says_setting(each) or not _follows(each, ports))
+        # A set-point may also be of a position.
+        and (
+            (each.meaning.side == "setting" and not each.meaning.reference)
+            or not _follows(each, ports)
+        )
     ]
     named = [each for each in possible if each.meaning.side == "setting"]
     if named:
@@ -236,18 +237,11 @@ def _setting(columns: Sequence[Column], ports: Mapping[str, Role]) -> dict[str, 
     if lengths:
         return {"theta_c": Role(lengths[0], "the only length, which sets the stiffness of a joint")}
     motors = [each for each in possible if each.meaning.side == "motor"]
-    second = [
-        each for each in motors
-        if each.meaning.quantity == "position" and not each.meaning.reference
-    ]  # fmt: skip
+    measured = [each for each in motors if not each.meaning.reference]
+    second = [each for each in measured if each.meaning.quantity == "position"]
     if len(second) == 1 and "theta" in ports:
         return {"theta_c": Role(second[0], "a second motor, which the link does not follow")}
     return {}
-
-
-def _says_setting(column: Column) -> bool:
-    """Whether the name of a column leaves no doubt; a set-point may also be of a position."""
-    return column.meaning.side == "setting" and not column.meaning.reference
 
 
 def _follows(column: Column, ports: Mapping[str, Role]) -> bool:

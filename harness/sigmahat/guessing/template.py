@@ -58,10 +58,9 @@ whose keys replace common keys: move a key there if a joint differs."""
 
 
 def write(log: Log, columns: Columns, joints: Mapping[str, JointGuess]) -> str:
-    """The text of a configuration. If no column looks like a port, the text asks for a column.
+    """The text of a configuration of these joints; values that all joints have are written once.
 
-    columns  of the log
-    joints   of the log, by name; values that are common to all joints are written once
+    If no column looks like a port, the text asks for a column.
     """
     lines = "\n".join(_listed(log, columns, joints))
     name = "" if len(joints) > 1 else next(iter(joints.values())).name

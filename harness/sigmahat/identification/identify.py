@@ -92,17 +92,19 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
     longest = max(pieces, key=lambda piece: len(piece.theta))
     noise = TorqueNoise.of(longest.tau, longest.theta, every, T)
     bandwidth = noise.bandwidth
-    asked = bool(configuration.parameters.get("rls.symmetric", False))
-    symmetric = asked and not configuration.symmetric_chosen
+    symmetric = bool(start.get("rls.symmetric", False)) and not configuration.symmetric_chosen
     coherent = math.inf if torque_constant else coherent_range(longest, gamma, noise)
     apart = _apart(pieces, count(every))
     h = apart * T
     thinned = [each.every(apart) for each in pieces]
     inertia = _known_inertia(every, configuration)
     f_0 = min(replace(noise, T=h).bandwidth, coherent)
-    known, change, hidden = inertia is not None, None, False
+    change, hidden = None, False
     if not torque_constant:
-        change, hidden = _spring_of(thinned, h, gamma, f_0, every, known)
+        plain = plain_equations(thinned, h, gamma, f_0)
+        change = change_of_spring(plain, thinned)
+        rounding = sum(count(every, encoder) ** 2 / 12 for encoder in ("theta", "q"))
+        hidden = is_hidden(plain, f_0, h, rounding, known=inertia is not None)
     springs = thinned if change is None else with_two_springs(thinned, change)
     motor = fit_motor(springs, h, gamma, symmetric, f_0, inertia)
     quantities = dict(motor.quantities)
@@ -113,8 +115,7 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
         notes.append(_NO_TORQUE if no_torque else _HIDDEN)
     if quantities["B"].determined:  # until here it was that of the configuration
         bandwidth = replace(noise, inertia=quantities["B"].value * abs(gamma)).bandwidth
-    nominal = configuration.ports["tau"].torque_constant
-    if torque_constant and nominal is not None:
+    if torque_constant and (nominal := configuration.ports["tau"].torque_constant) is not None:
         quantities["torque_constant"] = motor.torque_constant(nominal)
     spring = motor.spring if math.isfinite(motor.spring) else 0.0
     center = _center(quantities.get("zero"), pieces)
@@ -134,7 +135,9 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
         if no_torque or hidden or change is not None
         else knees(thinned, h, gamma, motor.polynomial, center),
         set_point=max(float(np.max(np.abs(piece.set_point))) for piece in pieces),
-        torque=0.0 if no_torque else max(spring, *_torques(pieces, gamma)),
+        torque=0.0
+        if no_torque
+        else max(spring, *(abs(gamma) * float(np.max(np.abs(each.tau))) for each in pieces)),
         B=float(every["motor.B"]),
         D_theta=float(every["motor.D_theta"]),
         notes=notes,
@@ -143,10 +146,6 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
 
 def _not_shown(quantity: Quantity) -> Quantity:
     return replace(quantity, value=math.nan, half_width=math.inf, determined=False)
-
-
-def _torques(pieces: Sequence[Signals], gamma: float) -> list[float]:
-    return [abs(gamma) * float(np.max(np.abs(each.tau))) for each in pieces]
 
 
 def _apart(pieces: Sequence[Signals], count: float) -> int:
@@ -171,22 +170,6 @@ def _known_inertia(every: Mapping[str, Value], configuration: Configuration) -> 
     std = float(every["prior.B"])
     given = "motor.B" in configuration.parameters
     return KnownInertia(float(every["motor.B"]), std) if given and 0 < std < WIDE else None
-
-
-def _spring_of(
-    pieces: Sequence[Signals],
-    T: float,
-    gamma: float,
-    f_0: float,
-    every: Mapping[str, Value],
-    known: bool,
-) -> tuple[int | None, bool]:
-    """The sample at which the stiffness changes, None if it does not; and whether rounding hides
-    what only a spring explains. known: whether the inertia is known.
-    """
-    plain = plain_equations(pieces, T, gamma, f_0)
-    rounding = sum(count(every, encoder) ** 2 / 12 for encoder in ("theta", "q"))
-    return change_of_spring(plain, pieces), is_hidden(plain, f_0, T, rounding, known)
 
 
 def _center(zero: Quantity | None, pieces: Sequence[Signals]) -> float:

@@ -38,10 +38,7 @@ def is_only_noise(values: Array) -> bool:
 
 
 def count(every: Mapping[str, Value], encoder: str = "theta") -> float:
-    """Angle of a count of an encoder [rad]; 0 if there is none.
-
-    every  parameters of the estimator
-    """
+    """Angle of a count of an encoder [rad], from all parameters; 0 if there is no encoder."""
     counts = float(every[f"encoder.{encoder}"])
     return 2 * math.pi / counts if counts else 0.0
 

@@ -158,11 +158,7 @@ def factor(X: Array) -> Array:
 
 
 def equations(pieces: Sequence[Signals], T: float, gamma: float, form: Form) -> Equations:
-    """The equations of all pieces, weighted by the low pass.
-
-    T      time between samples [s]
-    gamma  gear ratio
-    """
+    """The equations of all pieces, with samples T [s] apart, weighted by the low pass."""
     of_polynomial = units(pieces)
     parts = []
     for piece in pieces:

@@ -132,10 +132,7 @@ _ORDER = 4  # powers of the torque of each of the two springs
 
 
 def plain_equations(pieces: Sequence[Signals], T: float, gamma: float, f_0: float) -> Equations:
-    """The equations of one spring with even and odd powers, without a set-point.
-
-    T, gamma and f_0 as for fit_motor().
-    """
+    """The equations of one spring with even and odd powers, no set-point; others as fit_motor()."""
     form = Form(f_0, min(2.5 * f_0, WIDEST / T), n=_ORDER, symmetric=False)
     return equations(pieces, T, gamma, form)
 
@@ -238,11 +235,8 @@ def _least(e: Equations, shares: Array, number: int) -> tuple[Array, Fit]:
         return found if math.isfinite(found) else math.inf
 
     tried = combinations(range(len(shares)), number)
-    return min((fitted(c) for c in tried if _are_apart(shares[list(c)])), key=error)
-
-
-def _are_apart(shares: Array) -> bool:
-    return bool(np.all(np.diff(shares) >= _KNEES_APART))
+    apart = (c for c in tried if np.all(np.diff(shares[list(c)]) >= _KNEES_APART))
+    return min(map(fitted, apart), key=error)
 
 
 def _is_one_knee(found: Fit) -> bool:

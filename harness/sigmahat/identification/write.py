@@ -182,10 +182,7 @@ def _give_to_the_joints(document: tomlkit.TOMLDocument, start: Mapping[str, floa
 
 
 def _is_not_known(name: str, item: Item, start: Mapping[str, float]) -> bool:
-    """Whether a parameter has a value that nobody knows.
-
-    start  start values of the FMU, of motor.B and so on
-    """
+    """Whether a parameter has a value that nobody knows; start has the values of the FMU."""
     comment, value = item.trivia.comment.rstrip(), item.unwrap()
     if not comment.endswith(_NOT_KNOWN):
         return False

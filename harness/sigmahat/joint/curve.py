@@ -84,10 +84,7 @@ def characteristic(reach: Range) -> tuple[float, float, float]:
 
 
 def nearest(settings: Sequence[float], set_points: Array) -> NDArray[np.intp]:
-    """Index of the set-point to which each point belongs; -1 if a point is far from all of them.
-
-    settings  increasing
-    """
+    """Index of the increasing setting to which each point belongs; -1 if it is far from all."""
     if len(settings) == 1:
         return np.zeros(len(set_points), np.intp)
     levels = np.asarray(settings, np.float64)
@@ -236,10 +233,7 @@ _CURVED = 0.01  # a smaller relative change of the stiffness is not printed
 
 
 def curve_text(curve: Curve, polynomial: bool = True) -> list[str]:
-    """Lines for a terminal, at most 3 or 4 of many set-points; none without data.
-
-    polynomial  whether the polynomial is shown
-    """
+    """Lines for a terminal, at most 3 or 4 of many set-points; none without data."""
     if not curve.branches:
         return []
     lines = [f"the stiffness as a curve, {reach_in_words(curve)}:"]

@@ -175,8 +175,7 @@ def reaches(points: MeasuredPoints, before: Sequence[LearnedLog], one_curve: boo
             and (one_curve or each.set_point[0] <= setting <= each.set_point[1])
             and (one_curve or not len(own) or each.set_point[0] == each.set_point[1])
         ]
-        if ranges:
-            phi = min(r[0] for r in ranges), max(r[1] for r in ranges)
+        if phi := _union(ranges):
             found.append(Reach(setting, phi))
     return found
 

@@ -30,10 +30,7 @@ MOTOR = {"B": "kg.m2", "D_theta": "N.m.s/rad"}
 
 
 def priors(p: Mapping[str, Value]) -> dict[str, float]:
-    """Standard deviations of the priors of UNITS, in the units of the outputs.
-
-    p  all parameters
-    """
+    """Standard deviations of the priors of UNITS, in the units of the outputs; p as for exact()."""
     tau_e, phi = float(p["prior.tau_e"]), float(p["range.phi"])
     # Friction by load has two parts: by the torque of the spring, and by the torque of the motor.
     by_load = math.sqrt(2) if p["prior.tau_coulomb"] else 1.0
@@ -43,7 +40,7 @@ def priors(p: Mapping[str, Value]) -> dict[str, float]:
 
 
 def exact(p: Mapping[str, Value]) -> Sequence[str]:
-    """Motor data that are taken as exact, of MOTOR."""
+    """Motor data that are taken as exact, of MOTOR; p: all parameters."""
     if p["modality"] != "Residual":
         return []
     return [name for name in MOTOR if not float(p[f"motor.{name}"]) * float(p[f"prior.{name}"])]

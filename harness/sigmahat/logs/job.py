@@ -48,7 +48,8 @@ class ReplayStatistics:
         self.used: dict[str, Range] = {}
         """Range of phi and setPoint at the samples that the regression used, if any."""
         self._stride = -(-ticks // _POINTS)
-        self._points: dict[str, list[np.ndarray[Any, Any]]] = {name: [] for name in NEEDED}
+        self.points: dict[str, list[np.ndarray[Any, Any]]] = {name: [] for name in NEEDED}
+        """Parts of the outputs NEEDED of up to 20000 ticks, evenly over the log."""
         self.last: dict[str, float] = {}  # Real outputs of the last tick
         self.last_doubt = ""  # item of the output doubt at the last tick
 
@@ -69,7 +70,7 @@ class ReplayStatistics:
                 self.later[name] = _wider(self.later[name], outputs[name][first:])
         shown = spread(self.ticks, count, self._stride)
         for name in NEEDED:
-            self._points[name].append(outputs[name][shown])
+            self.points[name].append(outputs[name][shown])
         self.skipped += int(np.count_nonzero(~outputs["valid"]))
         self.ticks += count
         self.last = {name: float(outputs[name][-1]) for name in OUTPUTS}
@@ -81,11 +82,6 @@ class ReplayStatistics:
     def ends(self, name: str) -> Array:
         """Minimum and maximum in each interval, [size: intervals x 2]."""
         return np.concatenate(self._parts[name])
-
-    @property
-    def spread_over_log(self) -> dict[str, np.ndarray[Any, Any]]:
-        """Outputs NEEDED of up to 20000 ticks, evenly over the log."""
-        return {name: np.concatenate(parts) for name, parts in self._points.items()}
 
     @property
     def doubts(self) -> dict[str, float]:
@@ -156,6 +152,7 @@ class Replay:
 
     def answer(self) -> Answer:
         """The curve and its measured points, at the end."""
-        outputs = self.statistics.spread_over_log
+        parts = self.statistics.points.items()
+        outputs = {name: np.concatenate(of_chunks) for name, of_chunks in parts}
         found = curve(self.slave, self.every, self.logs, points_of(outputs, self.method))
         return Answer(found, shown_points(outputs, self.method), self.statistics.last_doubt)

@@ -17,8 +17,6 @@ from sigmahat.files import toml_file
 JOINTS = "joints"  # name of the section
 Place = tuple[str, ...]
 """Sections and key of a value: ("ports", "q", "unit"), ("parameters", "motor.B")."""
-
-
 _NAME = re.compile(r"\w[\w.-]*")
 
 

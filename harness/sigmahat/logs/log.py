@@ -156,10 +156,8 @@ def _most_numbers(path: Path) -> int:
 
 def check_together(path: Path, numbers: int) -> None:
     """Raises LogError for more numbers than all columns that are compared may hold."""
-    most = _TOGETHER * _NUMBERS
-    if numbers > most:  # for fewer numbers, the size of the file does not matter
-        most = _TOGETHER * _most_numbers(path)
-    if numbers > most:
+    # For fewer numbers, the size of the file does not matter.
+    if numbers > _TOGETHER * _NUMBERS and numbers > (most := _TOGETHER * _most_numbers(path)):
         raise LogError(
             f"{path}: {numbers} numbers, expected at most {most} to guess from; "
             "save the columns of one joint alone, or fewer rows"
@@ -177,9 +175,8 @@ def check_columns(path: Path, columns: int) -> None:
 
 def check_numbers(path: Path, numbers: int) -> None:
     """Raises LogError for more numbers than a file of this size may hold."""
-    if numbers <= _NUMBERS:  # then the file, which may have vanished, does not matter
-        return
-    if numbers > _most_numbers(path):
+    # For fewer numbers, the file, which may have vanished, does not matter.
+    if numbers > _NUMBERS and numbers > _most_numbers(path):
         raise LogError(
             f"{path}: {numbers} numbers or more in a file of {path.stat().st_size / 1e6:.3g} MB, "
             f"expected at most {_most_numbers(path)}; save it without compression, or in parts"

@@ -25,10 +25,7 @@ Outputs = Mapping[str, NDArray[Any]]
 
 @contextmanager
 def mcap_file(path: Path, fmu: Fmu, T: float) -> Iterator[Callable[[Outputs], None]]:
-    """Yields a function that writes a message for each of the next ticks, given their outputs.
-
-    T  time between ticks [s]
-    """
+    """Yields a function that writes a message for each of the next ticks, which are T [s] apart."""
     with path.open("wb") as file:
         writer = Writer(file)
         writer.start(library="sigmahat")

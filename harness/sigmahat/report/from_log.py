@@ -1,11 +1,10 @@
 """The files of `sigmahat estimate` with the findings of the checks, and a report from the files."""
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
 from datetime import datetime
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,7 +40,6 @@ from sigmahat.logs.panels import (
     sampling,
     stiffness_panels,
 )
-from sigmahat.plotting.panels import Panel
 from sigmahat.plotting.style import plain_text, plain_title, plain_unit
 from sigmahat.report.contents import Contents, TextTable, number, of_file
 from sigmahat.report.residuals import residual_panels, residuals
@@ -90,10 +88,13 @@ def from_log(folder: Path) -> Contents:
     """
     table = EstimateTable(folder)
     used, t = table["valid"].astype(bool), table["t"]
-    signals = drawn = table.without("valid", "t")
+    signals = table.without("valid", "t")
     answer = _answer(folder)
-    if answer.sheet.method != "FilteredRegression":
-        drawn = signals.without("sigma_std")  # the method gives no interval
+    regression = answer.sheet.method == "FilteredRegression"
+    # The other method gives no interval, and predicts no friction.
+    drawn = signals if regression else signals.without("sigma_std")
+    bandwidth = float(answer.sheet.start_values["regression.bandwidth"])
+    of_model = residuals(t, drawn, used, bandwidth) if regression else None
     reduced = reduce(t, drawn)
     marks = t[detected(signals["change_age"], signals["confident"].astype(bool))].tolist()
     log = answer.replayed
@@ -118,7 +119,7 @@ def from_log(folder: Path) -> Contents:
         [
             *stiffness_panels(reduced, [Estimate("estimate", {"sigma": "sigma"})]),
             *quantity_panels(reduced, ""),
-            *_residuals(t, drawn, used, answer),
+            *(residual_panels(of_model) if of_model else []),
         ],
         headline=headline(answer.curve, answer.sheet.doubt),
         answer=list(curve_panels(answer.curve, answer.points)),
@@ -146,21 +147,6 @@ def from_joints(folder: Path) -> Contents:
     note = f"Each joint has a report of its own: sigmahat report {folder}/{names[0]}"
     stiffness = replace(of_file("Stiffness", table), note=note)
     return Contents(f"Joints: {folder.resolve().name}", lines, [stiffness], panels)
-
-
-def _residuals(
-    t: NDArray[Any],
-    drawn: Mapping[str, NDArray[Any]],
-    used: NDArray[np.bool_],
-    answer: _Answer,
-) -> Iterator[Panel]:
-    """Panels about the residual of FilteredRegression; the other method predicts no friction."""
-    if answer.sheet.method != "FilteredRegression":
-        return
-    bandwidth = float(answer.sheet.start_values["regression.bandwidth"])
-    found = residuals(t, drawn, used, bandwidth)
-    if found is not None:
-        yield from residual_panels(found)
 
 
 def _answer(folder: Path) -> _Answer:

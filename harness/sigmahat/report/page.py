@@ -28,9 +28,7 @@ _SEEDS = "seeds"
 
 
 def from_comparison(name: str, folder: Path) -> Contents:
-    """The figure, and a table for each group of conditions.
-
-    name  of the file, METHODS or MISFITS
+    """The figure, and a table for each group of conditions; name is METHODS or MISFITS.
 
     Raises ValueError, which says what to do, if the file is not what `compare` wrote.
     """
@@ -79,9 +77,7 @@ def from_sweep(folder: Path) -> Contents:
 
 
 def report(folder: Path) -> str:
-    """HTML with the tables and plots of a reproduction, a log, a sweep or a comparison.
-
-    folder  where one of these commands wrote its results
+    """HTML with the tables and plots of a reproduction, a log, a sweep or a comparison in a folder.
 
     Raises ValueError, which says what to do, if the folder has no such results, or damaged files.
     """

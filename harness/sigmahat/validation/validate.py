@@ -251,7 +251,10 @@ def validate(log: Log, configuration: Configuration, start_from: str | Path) -> 
     with Slave(fmu, "learned") as slave:
         job = Replay(slave, log, configuration, learned)
         samples = job.samples
-        points = _points(log, samples)
+        complete = samples.values[np.isfinite(samples.values).all(axis=1)]
+        if not len(complete):
+            raise LogError(f"{log.path}: no instant at which every port has a value")
+        points = complete[:: -(-len(complete) // _INSTANTS)]
         start = sheet.start_values(slave, every)
         before = stiffness_at(slave, samples.names, points, job.t, samples.T)
         at = (before[name] for name in ("phi", "setPoint", "tau_e", "sigma"))
@@ -294,14 +297,6 @@ def _turned(
         "curve, so that the deformation is wrong: set range.phi to the largest deformation, "
         f"{max(abs(low), abs(high)):.2g} rad or a little more, or ports.{name}.zero for this log"
     )
-
-
-def _points(log: Log, samples: Samples) -> Array:
-    """Values of the ports at the instants that are compared."""
-    complete = samples.values[np.isfinite(samples.values).all(axis=1)]
-    if not len(complete):
-        raise LogError(f"{log.path}: no instant at which every port has a value")
-    return complete[:: -(-len(complete) // _INSTANTS)]
 
 
 def summary(result: Validation) -> str:

@@ -201,7 +201,14 @@ class CsvLog(Log):
         """A reader of all columns; without types the first block decides."""
         self._cut.clear()  # the text is parsed more than once
         options = pa.csv.ConvertOptions(column_types=types, decimal_point=self.dialect.decimal)
-        return pa.csv.open_csv(self.path, self._options(), self._parse, options)
+        read = pa.csv.ReadOptions(
+            use_threads=False,
+            block_size=_BLOCK,
+            column_names=self._names,
+            skip_rows=self.dialect.head,
+            encoding=self.dialect.encoding,
+        )
+        return pa.csv.open_csv(self.path, read, self._parse, options)
 
     def _parsed(self, copy: pa.parquet.ParquetFile, name: str) -> pa.ChunkedArray:
         """A column that a copy holds as text, in the type that fits all of its values."""
@@ -209,15 +216,6 @@ class CsvLog(Log):
         pa.csv.write_csv(copy.read([name], use_threads=False), text)
         options = pa.csv.ConvertOptions(decimal_point=self.dialect.decimal)
         return pa.csv.read_csv(pa.BufferReader(text.getvalue()), convert_options=options).column(0)
-
-    def _options(self) -> pa.csv.ReadOptions:
-        return pa.csv.ReadOptions(
-            use_threads=False,
-            block_size=_BLOCK,
-            column_names=self._names,
-            skip_rows=self.dialect.head,
-            encoding=self.dialect.encoding,
-        )
 
 
 def _first_lines(path: Path) -> tuple[list[str], str]:
