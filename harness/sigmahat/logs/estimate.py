@@ -30,7 +30,7 @@ from sigmahat.logs.data_sheet import MOTOR, UNITS, absent, data_sheet, exact, pr
 from sigmahat.logs.job import Replay
 from sigmahat.logs.learned import LEARNED, read_learned, write_learned
 from sigmahat.logs.log import Log
-from sigmahat.logs.output import REPLAYED, EstimateWriter, Replayed
+from sigmahat.logs.output import MCAP, REPLAYED, EstimateWriter, Replayed, mcap_file
 from sigmahat.logs.replay import OUTPUTS, coefficients
 
 _MOTOR = ("D_theta_hat", "B_hat", "tau_coulomb_hat")
@@ -153,8 +153,6 @@ def _written(
         table = files.enter_context(EstimateWriter(replay.log, replay.samples, units, folder))
         adds: list[Callable[[Mapping[str, NDArray[Any]]], object]] = [table.add]
         if mcap:
-            from sigmahat.logs.mcap_file import MCAP, mcap_file
-
             adds.append(files.enter_context(mcap_file(folder / MCAP, fmu, replay.samples.T)))
         digest = sha256(replay.log.path)
         replay.run(lambda outputs: [add(outputs) for add in adds], progress, digest)

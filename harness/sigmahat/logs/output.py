@@ -1,4 +1,4 @@
-"""Writes and reads the table of `sigmahat estimate`, and its notes for the report.
+"""Writes and reads the table of `sigmahat estimate` and its notes; writes estimates as messages.
 
 A CSV log gives `estimate.csv`, every other log `estimate.parquet`: the log with the estimates. The
 titles of the estimates are "estimate.sigma [N.m/rad]" and so on; "estimate.t [s]" is the time of
@@ -10,10 +10,11 @@ columns of the log are unchanged. Times are float64, because times of hours need
 
 from __future__ import annotations
 
+import json
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, contextmanager
 from copy import copy
 from dataclasses import dataclass
 from pathlib import Path
@@ -27,6 +28,9 @@ import pyarrow.parquet
 from numpy.typing import NDArray
 
 from sigmahat.files import tables
+from sigmahat.files.output import finite
+from sigmahat.fmi.instance import Fmu
+from sigmahat.fmi.series import schema
 from sigmahat.joint.stored import NO_OTHER_KEYS, Format, Text
 from sigmahat.logs.log import Log, LogError
 from sigmahat.logs.readers.tables import CsvLog, ParquetLog
@@ -156,6 +160,43 @@ class _Rows:
         table = pa.Table.from_batches(self._left)
         self._left = table.slice(rows).to_batches() or [self._left[-1].slice(0, 0)]
         return table.slice(0, rows)
+
+
+MCAP = "estimate.mcap"  # name of the file in the folder of results
+_TOPIC = "/estimate"
+
+
+@contextmanager
+def mcap_file(
+    path: Path, fmu: Fmu, T: float
+) -> Iterator[Callable[[Mapping[str, NDArray[Any]]], None]]:
+    """Yields a function that writes a message for each of the next ticks, which are T [s] apart.
+
+    Messages are JSON of the topic /estimate, for Foxglove and PlotJuggler. Their schema has
+    unit and description of each field. Times count from the start of the log.
+    """
+    from mcap.writer import Writer
+
+    with path.open("wb") as file:
+        writer = Writer(file)
+        writer.start(library="sigmahat")
+        ticks, channel = 0, -1
+
+        def add(outputs: Mapping[str, NDArray[Any]]) -> None:
+            nonlocal ticks, channel
+            if not ticks:
+                data = json.dumps(schema(fmu, outputs)).encode()
+                described = writer.register_schema("estimate", "jsonschema", data)
+                channel = writer.register_channel(_TOPIC, "json", described)
+            columns = [finite(values.tolist()) for values in outputs.values()]
+            for row in zip(*columns, strict=True):
+                stamp = round(1e9 * T * ticks)
+                data = json.dumps(dict(zip(outputs, row, strict=True))).encode()
+                writer.add_message(channel, stamp, data, stamp)
+                ticks += 1
+
+        yield add
+        writer.finish()  # type: ignore[no-untyped-call]
 
 
 class EstimateTable(Mapping[str, NDArray[np.float64]]):
