@@ -10,7 +10,7 @@ from browser import opened
 from command_line import Shell
 from recorded_logs import REGRESSION, read_estimate, write_log
 from regression_joint import Joint
-from sigmahat.logs.changes import Changes
+from sigmahat.logs.job import Changes
 
 MARKS = """
 return [...Bokeh.documents[0]._all_models.values()]

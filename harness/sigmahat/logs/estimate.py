@@ -23,11 +23,10 @@ from sigmahat.joint.curve import (
     stiffness_points,
     write_curve,
 )
-from sigmahat.logs.changes import StiffnessChange
 from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.curve import POINTS, Answer, write_points
 from sigmahat.logs.data_sheet import MOTOR, UNITS, absent, data_sheet, exact, priors
-from sigmahat.logs.job import Replay
+from sigmahat.logs.job import Replay, StiffnessChange
 from sigmahat.logs.learned import LEARNED, read_learned, write_learned
 from sigmahat.logs.log import Log
 from sigmahat.logs.output import MCAP, REPLAYED, EstimateWriter, Replayed, mcap_file

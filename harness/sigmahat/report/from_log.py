@@ -26,10 +26,10 @@ from sigmahat.joint.curve import (
 )
 from sigmahat.joint.sheet import Sheet
 from sigmahat.logs import estimate as estimation
-from sigmahat.logs.changes import detected
 from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.curve import POINTS, MeasuredPoints, read_points
 from sigmahat.logs.estimate import JOINTS
+from sigmahat.logs.job import detected
 from sigmahat.logs.log import Log
 from sigmahat.logs.output import REPLAYED, EstimateTable, Replayed
 from sigmahat.logs.panels import (
