@@ -1,15 +1,40 @@
 """MISRA C:2012: the table of docs/proof/misra.md has all that does not follow a rule."""
 
+import json
 import re
+import shutil
+import subprocess
+import sys
+from collections import defaultdict
 from pathlib import Path
 
+import fmpy
 import pytest
 
-from gate import missing
-from misra_findings import findings, version
+import c_sources
+from c_sources import REPOSITORY
+from gate import missing, need
 
-PAGE = Path(__file__).parents[2] / "docs" / "proof" / "misra.md"
+PAGE = REPOSITORY / "docs" / "proof" / "misra.md"
 FOLDERS = ("c", "fmu_src")
+CONFIGURATIONS = (
+    (("SH_REAL=double", "__GNUC__", "__SSE2__"), FOLDERS),
+    (("SH_REAL=float",), ("c",)),
+)
+"""Macros and folders. The second one takes the other branch of c/pair.h, which is plain C."""
+HEADERS = [*c_sources.FOLDERS, REPOSITORY / "fmu_src", REPOSITORY / "fmu_src" / "shell"]
+FMI_HEADERS = Path(fmpy.__file__).parent / "c-code"
+# A checker for each file, as one writes what all files say together for its first file only.
+PROGRAM = """
+import sys
+sys.path.insert(0, sys.argv.pop(1))
+import misra
+arguments = misra.get_args_parser().parse_args()
+for file in arguments.dumpfile:
+    misra.MisraChecker(misra.MisraSettings(arguments)).parseDump(file)
+"""
+Findings = dict[tuple[str, str], set[str]]
+"""Places by rule and folder."""
 
 
 def deviations() -> list[list[str]]:
@@ -24,8 +49,54 @@ def cppcheck() -> None:
     """The version that the page names: another one finds other places."""
     named = re.search(r"cppcheck (\d+\.\d+)", PAGE.read_text(encoding="utf-8"))
     assert named
-    if version() != named[1]:
-        missing(f"cppcheck {named[1]}", f"apt-get install cppcheck; there is {version()}")
+    done = subprocess.run(
+        [need("cppcheck"), "--version"], capture_output=True, text=True, check=True
+    )
+    if done.stdout.split()[1] != named[1]:
+        missing(f"cppcheck {named[1]}", f"apt-get install cppcheck; there is {done.stdout}")
+
+
+def addons() -> Path:
+    """The folder with misra.py. `cppcheck --addon` shows only one of the findings of a line."""
+    prefix = Path(need("cppcheck")).resolve().parents[1]
+    for pattern in ("lib/*/cppcheck/addons/misra.py", "share/cppcheck/addons/misra.py"):
+        for file in prefix.glob(pattern):
+            return file.parent
+    missing("misra.py of cppcheck", "apt-get install cppcheck")
+
+
+def ask(tree: Path, pattern: str, found: Findings, *script: str | Path) -> None:
+    """Adds the findings in c/ and fmu_src/ that the program prints for all files `pattern`."""
+    files = sorted(str(file.relative_to(tree)) for file in tree.rglob(pattern))
+    command = [sys.executable, *script, "--cli", *files]
+    done = subprocess.run(command, cwd=tree, capture_output=True, text=True, check=True)
+    for line in map(json.loads, done.stdout.splitlines()):
+        file = Path(line["file"])
+        if not file.is_absolute():  # else it is a header of FMI or a generated file
+            rule = line["errorId"].removeprefix("c2012-")
+            found[rule, file.parts[0]].add(f"{file}:{line['linenr']}:{line['column']}")
+
+
+def findings(folder: Path, build: Path) -> Findings:
+    """The findings in all configurations. `folder` is for files that nobody needs later."""
+    found: Findings = defaultdict(set)
+    for index, (macros, names) in enumerate(CONFIGURATIONS):
+        tree = folder / str(index)
+        groups: dict[Path, list[str]] = {}  # by the folder of generated code
+        for name in names:
+            shutil.copytree(REPOSITORY / name, tree / name)
+            for source in sorted((REPOSITORY / name).rglob("*.c")):
+                group = groups.setdefault(c_sources.generated(source, build), [])
+                group.append(str(source.relative_to(REPOSITORY)))
+        headers = [each.relative_to(REPOSITORY) for each in HEADERS]
+        for generated, sources in groups.items():  # writes FILE.dump beside each source
+            command = [need("cppcheck"), "--dump", "--quiet", "--std=c99"]
+            command += [f"-D{macro}" for macro in macros]
+            command += [f"-I{each}" for each in (*headers, generated, FMI_HEADERS)]
+            subprocess.run([*command, *sources], cwd=tree, check=True)
+        ask(tree, "*.dump", found, "-c", PROGRAM, addons())
+        ask(tree, "*.ctu-info", found, addons() / "misra.py")  # in all files together
+    return found
 
 
 def test_the_table_is_in_order() -> None:
@@ -47,9 +118,6 @@ def test_the_table_has_the_rules_that_are_not_followed(build: Path, tmp_path: Pa
         for folder, told in zip(FOLDERS, places, strict=True)
         if told == "yes"
     }
-    places: dict[tuple[str, str], list[str]] = {}
-    for at in findings(tmp_path, build):
-        place = f"{at.file}:{at.line}:{at.column}"
-        places.setdefault((at.rule, at.file.partition("/")[0]), []).append(place)
-    wrong = {rule: sorted(places.get(rule, [])) for rule in table ^ places.keys()}
+    found = findings(tmp_path, build)
+    wrong = {rule: sorted(found.get(rule, [])) for rule in table ^ found.keys()}
     assert not wrong, wrong
