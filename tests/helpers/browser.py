@@ -1,16 +1,21 @@
 """Chromium without a window, to test reports and the site in a browser."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from selenium.common.exceptions import JavascriptException, StaleElementReferenceException
 from selenium.webdriver import Chrome, ChromeOptions
 from selenium.webdriver.chrome.service import Service
+from selenium.webdriver.support.ui import WebDriverWait
 
 from gate import need
 
+_LONGEST = 90.0  # [s] for all that a page computes
+# The page is drawing an element anew: it is gone, or there twice, for a moment.
+_REDRAWN = (StaleElementReferenceException, JavascriptException)
 _IDLE = """
 const done = arguments[0];
 const look = () => !document.querySelector(".plots") || (typeof Bokeh !== "undefined"
@@ -49,6 +54,11 @@ class Page:
     def run(self, script: str, *arguments: object) -> Any:
         """Runs a script that ends with return. Returns its value."""
         return self.driver.execute_script(script, *arguments)
+
+    def until(self, is_so: Callable[[], Any], what: str = "") -> Any:
+        """Waits until something is there or true. Returns it."""
+        wait = WebDriverWait(self.driver, _LONGEST, 0.1, _REDRAWN)
+        return wait.until(lambda _: is_so(), what)
 
     def complaints(self) -> list[str]:
         """Errors and warnings on the console since the last call."""

@@ -1,7 +1,7 @@
 """What a user does with the page of the site that runs the FMUs in the browser."""
 
 import io
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -9,11 +9,9 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.csv
 from numpy.typing import NDArray
-from selenium.webdriver.support.ui import WebDriverWait
 
 from browser import Page, opened
 
-_LONGEST = 60.0  # [s] for all that the page computes
 _DROP = """
 const data = new DataTransfer();
 data.items.add(new File([arguments[1]], arguments[0]));
@@ -74,7 +72,7 @@ class LivePage:
     def drops(self, text: str, name: str = "log.csv") -> str:
         """Drops a file, and returns what the page complains of; nothing if the file is good."""
         self.page.run(f"{_DROP} log.form.hidden = true;", name, text)
-        self.until(lambda: self.text("log-message") or self.text("log-name"))
+        self.page.until(lambda: self.text("log-message") or self.text("log-name"))
         return self.text("log-message")
 
     def fills(self, fields: Mapping[str, object]) -> None:
@@ -84,16 +82,13 @@ class LivePage:
         """Fills fields of the log in, and lets it be estimated. Returns what it complains of."""
         self.fills(fields)
         self.page.run("log.form.requestSubmit()")
-        self.until(lambda: self.text("log-message") or self.text("answer"))
+        self.page.until(lambda: self.text("log-message") or self.text("answer"))
         return self.text("log-message")
 
     def columns_of_run(self, names: Sequence[str]) -> dict[str, NDArray[np.float64]]:
         """Outputs of the estimator over the log."""
         script = "return Object.fromEntries(given[0].map((n) => [n, log.run.columns[n]]))"
         return self.arrays(script, names)
-
-    def until(self, is_so: Callable[[], object]) -> None:
-        WebDriverWait(self.page.driver, _LONGEST, poll_frequency=0.05).until(lambda _: is_so())
 
 
 @contextmanager

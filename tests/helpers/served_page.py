@@ -5,11 +5,10 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from selenium.common.exceptions import JavascriptException, StaleElementReferenceException
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.remote.webelement import WebElement
 from selenium.webdriver.support.ui import Select
@@ -80,15 +79,8 @@ class Hand:
 
     def find(self, name: str) -> WebElement:
         """The input or button of a name, as soon as it is there."""
-        found: list[WebElement] = []
-
-        def is_there() -> bool:
-            element = self.page.run(_FIND, name)
-            found[:] = [element] if isinstance(element, WebElement) else []
-            return bool(found)
-
-        self.until(is_there, name)
-        return found[0]
+        found: WebElement = self.page.until(lambda: self.page.run(_FIND, name), name)
+        return found
 
     def value(self, name: str) -> str:
         """What an input shows."""
@@ -103,7 +95,9 @@ class Hand:
         Select(self.find(name)).select_by_visible_text(item)
 
     def presses(self, name: str) -> None:
-        button = self.find(name)
+        self._click(self.find(name))
+
+    def _click(self, button: WebElement) -> None:
         self.page.run("arguments[0].scrollIntoView({block: 'center'})", button)
         button.click()
 
@@ -116,13 +110,12 @@ class Hand:
 
         def is_accepted() -> bool:
             button = self.page.run(_FIND, f"accept {name}")
-            if self.value(name) == before and isinstance(button, WebElement):
-                self.page.run("arguments[0].scrollIntoView({block: 'center'})", button)
-                button.click()
+            if self.value(name) == before and button:
+                self._click(button)
                 time.sleep(0.5)
             return self.value(name) != before
 
-        self.until(is_accepted, f"accept {name}")
+        self.page.until(is_accepted, f"accept {name}")
 
     def text(self) -> str:
         """All that the page says."""
@@ -130,16 +123,4 @@ class Hand:
 
     def sees(self, words: str) -> None:
         """Waits until the page says something."""
-        self.until(lambda: words in self.text(), words)
-
-    def _now(self, is_so: Callable[[], bool]) -> bool:
-        try:
-            return is_so()
-        except (StaleElementReferenceException, JavascriptException):
-            return False  # the page is drawing it anew: it is gone, or there twice, for a moment
-
-    def until(self, is_so: Callable[[], bool], what: str) -> None:
-        end = time.monotonic() + _LONGEST
-        while not self._now(is_so):
-            assert time.monotonic() < end, f"{what!r} is not in: {self.text()}"
-            time.sleep(0.1)
+        self.page.until(lambda: words in self.text(), words)
