@@ -19,12 +19,9 @@ import sys
 import tempfile
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import redirect_stdout
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from io import StringIO
 from pathlib import Path
-
-import pytest
 
 TESTS = Path(__file__).resolve().parents[1]
 LIBRARY = TESTS.parent / "c"
@@ -193,46 +190,25 @@ def files_for(source: str) -> list[str]:
     ]
 
 
-def start_tests(tree: Path, files: Sequence[str], limit: int = resource.RLIM_INFINITY) -> int:
-    """Starts the fast tests with the library of a build tree in a new process; returns its id.
-
-    limit  time of the processor after which it ends [s]
-
-    It is forked, because the imports of the tests take longer than most of the tests.
-    """
-    child = os.fork()
-    if child:
-        return child
-    os.environ["SIGMAHAT_BUILD"] = str(tree)
-    resource.setrlimit(resource.RLIMIT_CPU, (limit, limit))
-    output = os.open(tree / "output.txt", os.O_WRONLY | os.O_CREAT)
-    os.dup2(output, 1)
-    os.dup2(output, 2)
-    status = 2
-    try:
-        status = pytest.main([*PYTEST, *files])
-    finally:
-        sys.stdout.flush()
-        os._exit(status)
+def passes(tree: Path, files: Sequence[str], limit: int = resource.RLIM_INFINITY) -> bool:
+    """Runs the fast tests with the library of a build tree, which it removes. False if a test fails
+    or crashes, or if they take more than `limit` seconds of the processor."""
+    command = [sys.executable, "-m", "pytest", *PYTEST, *files]
+    environment = {**os.environ, "SIGMAHAT_BUILD": str(tree)}
+    pipe, both = subprocess.PIPE, subprocess.STDOUT
+    with subprocess.Popen(command, env=environment, stdout=pipe, stderr=both, text=True) as process:
+        resource.prlimit(process.pid, resource.RLIMIT_CPU, (limit, limit))
+        text = process.communicate()[0]
+    if process.returncode > 1:
+        raise RuntimeError(f"pytest ended with {process.returncode}:\n{text}")
+    shutil.rmtree(tree)
+    return process.returncode == 0
 
 
 def children_seconds() -> float:
     """Time of the processor that processes took that were started here and have ended [s]."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
-
-
-def finished(running: dict[int, Path]) -> tuple[int, bool]:
-    """Waits for one of the processes and removes its tree. Returns its id and whether it passed.
-
-    It did not pass if a test failed or crashed or did not end.
-    """
-    child, status = os.wait()
-    tree, code = running.pop(child), os.waitstatus_to_exitcode(status)
-    if code > 1:
-        raise RuntimeError(f"pytest ended with {code}:\n{(tree / 'output.txt').read_text()}")
-    shutil.rmtree(tree)
-    return child, code == 0
 
 
 def shares(number: int) -> dict[str, int]:
@@ -254,44 +230,35 @@ def mutants(bench: Bench, file: str, number: int, seed: str) -> Iterator[tuple[M
                 break
 
 
+def judge(bench: Bench, file: str, number: int, seed: str, limit: int) -> Counter[str]:
+    """Runs the tests with mutants of a file: how many were killed, survived, or are equivalent."""
+    outcome: Counter[str] = Counter()
+    for mutant, tree in mutants(bench, file, number, seed):
+        passed = passes(tree, files_for(file), limit)
+        same = any(file == where and mutant.makes(code) for where, code, _ in EQUIVALENT)
+        result = "killed" if not passed else "equivalent" if same else "survived"
+        outcome[result] += 1
+        if passed:
+            print(f"{result}: {mutant}", flush=True)
+    return outcome
+
+
 def run(folder: Path, number: int, seed: str) -> Counter[str]:
     """Makes at least `number` mutants in a temporary folder and runs the tests with each.
 
     Returns how many were killed, survived, or are equivalent. Raises RuntimeError if the tests do
     not pass with the code as it is.
     """
-    bench = Bench(folder)
-    files = sorted({path for source in shares(number) for path in files_for(source)})
-    with redirect_stdout(StringIO()):
-        pytest.main([*PYTEST, "--collect-only", *files])  # imports the modules that they use
-    unchanged = Path(tempfile.mkdtemp(dir=folder))
-    bench.link(unchanged, bench.objects)
+    bench, parts = Bench(folder), shares(number)
+    files = sorted({path for source in parts for path in files_for(source)})
+    unchanged = bench.link(Path(tempfile.mkdtemp(dir=folder)), bench.objects)
     before = children_seconds()
-    if not finished({start_tests(unchanged, files): unchanged})[1]:
+    if not passes(unchanged, files):
         raise RuntimeError("the tests fail without any change")
     limit = math.ceil(LIMIT * (children_seconds() - before))
-    outcome: Counter[str] = Counter()
-    running: dict[int, Path] = {}
-    tested: dict[int, Mutant] = {}
-
-    def wait() -> None:
-        child, passed = finished(running)
-        mutant = tested[child]
-        same = any(mutant.file == file and mutant.makes(code) for file, code, _ in EQUIVALENT)
-        result = "killed" if not passed else "equivalent" if same else "survived"
-        outcome[result] += 1
-        if passed:
-            print(f"{result}: {mutant}", flush=True)
-
-    for file, share in shares(number).items():
-        for mutant, tree in mutants(bench, file, share, seed):
-            if len(running) == (os.cpu_count() or 1):
-                wait()
-            child = start_tests(tree, files_for(file), limit)
-            running[child], tested[child] = tree, mutant
-    while running:
-        wait()
-    return outcome
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        jobs = [pool.submit(judge, bench, *part, seed, limit) for part in parts.items()]
+        return sum((job.result() for job in jobs), Counter())
 
 
 def main() -> int:
