@@ -5,10 +5,9 @@
 #include "plant_functions.h"
 #include "shell_importer.h"
 
-static int any_results(double *to, int count)
+static void any_results(double *to, int count)
 {
     Frama_C_make_unknown((char *)to, (size_t)count * sizeof *to);
-    return 0;
 }
 
 /*@ requires \valid_read(x + (0 .. n - 1)) && \initialized(x + (0 .. n - 1)); */
@@ -18,44 +17,25 @@ static void need(const double *x, int n)
     (void)n;
 }
 
-int sh_plant_start(const double **arg, double **res, int *iw, double *w, int mem)
-{
-    need(arg[0], SH_PLANT_PARAMETERS);
-    return any_results(res[0], SH_PLANT_STATES);
-}
-
-int sh_plant_xdot(const double **arg, double **res, int *iw, double *w, int mem)
-{
-    need(arg[0], SH_PLANT_STATES);
-    need(arg[1], SH_PLANT_INPUTS);
-    need(arg[2], SH_PLANT_PARAMETERS);
-    return any_results(res[0], SH_PLANT_STATES);
-}
-
-int sh_plant_outputs(const double **arg, double **res, int *iw, double *w, int mem)
-{
-    need(arg[0], SH_PLANT_STATES);
-    need(arg[1], SH_PLANT_INPUTS);
-    need(arg[2], SH_PLANT_PARAMETERS);
-    need(arg[3], SH_PLANT_NORMALS);
-    return any_results(res[0], SH_PLANT_OUTPUTS);
-}
-
-int sh_plant_factorize(const double **arg, double **res, int *iw, double *w, int mem)
-{
-    need(arg[0], SH_PLANT_STATES);
-    need(arg[1], SH_PLANT_INPUTS);
-    need(arg[2], SH_PLANT_PARAMETERS);
-    need(arg[3], 3);
-    return any_results(res[0], SH_PLANT_FACTORS);
-}
-
-int sh_plant_solve_real(const double **arg, double **res, int *iw, double *w, int mem)
-{
-    need(arg[0], SH_PLANT_FACTORS);
-    need(arg[1], SH_PLANT_STATES);
-    return any_results(res[0], SH_PLANT_STATES);
-}
+/* A function of CasADi: how many results it has, and the sizes of its arguments. */
+#define EQUATIONS(function, results, ...)                                                          \
+    int function(const double **arg, double **res, int *iw, double *w, int mem)                    \
+    {                                                                                              \
+        const int sizes[] = {__VA_ARGS__};                                                         \
+        int i;                                                                                     \
+        /*@ loop unroll 4; */                                                                      \
+        for (i = 0; i < (int)(sizeof sizes / sizeof *sizes); ++i)                                  \
+            need(arg[i], sizes[i]);                                                                \
+        any_results(res[0], results);                                                              \
+        return 0;                                                                                  \
+    }
+EQUATIONS(sh_plant_start, SH_PLANT_STATES, SH_PLANT_PARAMETERS)
+EQUATIONS(sh_plant_xdot, SH_PLANT_STATES, SH_PLANT_STATES, SH_PLANT_INPUTS, SH_PLANT_PARAMETERS)
+EQUATIONS(sh_plant_outputs, SH_PLANT_OUTPUTS, SH_PLANT_STATES, SH_PLANT_INPUTS, SH_PLANT_PARAMETERS,
+          SH_PLANT_NORMALS)
+EQUATIONS(sh_plant_factorize, SH_PLANT_FACTORS, SH_PLANT_STATES, SH_PLANT_INPUTS,
+          SH_PLANT_PARAMETERS, 3)
+EQUATIONS(sh_plant_solve_real, SH_PLANT_STATES, SH_PLANT_FACTORS, SH_PLANT_STATES)
 
 int sh_plant_solve_complex(const double **arg, double **res, int *iw, double *w, int mem)
 {
@@ -63,7 +43,8 @@ int sh_plant_solve_complex(const double **arg, double **res, int *iw, double *w,
     need(arg[1], SH_PLANT_STATES);
     need(arg[2], SH_PLANT_STATES);
     any_results(res[0], SH_PLANT_STATES);
-    return any_results(res[1], SH_PLANT_STATES);
+    any_results(res[1], SH_PLANT_STATES);
+    return 0;
 }
 
 /* A plant needs no marks: whatever its numbers are, they lead to no other memory. */
