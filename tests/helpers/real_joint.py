@@ -15,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
+from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
 import sigmahat
@@ -73,7 +74,7 @@ class Log:
 
     def rms(self, fit: "Fit") -> float:
         """RMS error of the fitted torque in percent of the torque range."""
-        error = fit.torque(self.setting, self.phi) - self.torque
+        error = fit.at(self.setting)(self.phi) - self.torque
         return float(100 * np.sqrt(np.mean(error**2)) / np.ptp(self.torque))
 
     def hysteresis(self) -> float:
@@ -112,34 +113,18 @@ class Fit:
     tau_e: float  # at the last sample [N.m]
     sigma: float  # at the last sample [N.m/rad]
 
-    def torque(self, setting: float, phi: Array) -> Array:
-        """Torque of the polynomial [N.m]."""
-        torque: Array = phi[:, None] ** self._powers @ self._of(setting)
-        return torque
-
-    def stiffness(self, setting: float, phi: float) -> float:
-        """Stiffness of the polynomial [N.m/rad]."""
-        e = self._powers
-        return float(e * phi ** np.maximum(e - 1, 0) @ self._of(setting))
-
-    @property
-    def _powers(self) -> NDArray[np.int64]:
-        return 2 * np.arange(N) + 1 if self.symmetric else np.arange(N)
-
-    def _of(self, setting: float) -> Array:
-        coefficients: Array = self.eta @ float(setting) ** np.arange(M)
-        return coefficients
+    def at(self, setting: float) -> Polynomial:
+        """Torque [N.m] over the deformation [rad]; its derivative is the stiffness."""
+        coefficients = np.zeros(2 * N)
+        powers = slice(1, None, 2) if self.symmetric else slice(N)
+        coefficients[powers] = self.eta @ float(setting) ** np.arange(M)
+        return Polynomial(coefficients)
 
 
 def slope(x: Array, y: Array, at: float, half_width: float) -> float:
     """Slope of the straight line through the points of y(x) within half_width of x = at."""
     near = np.abs(x - at) < half_width
     return float(np.polyfit(x[near], y[near], 1)[0])
-
-
-def folder() -> Path:
-    """Where the data are. Raises FileNotFoundError if they are not there."""
-    return data_folder("desr", "desr_x00.csv")
 
 
 def logs(path: Path) -> list[Log]:
@@ -208,9 +193,9 @@ def worst(measured: Sequence[Log], fit: Fit, half_width: float, line: bool = Fal
     for log in measured:
         x, y = log.mean_curve()
         for phi in POINTS:
-            sigma = fit.stiffness(log.setting, phi)
+            sigma = fit.at(log.setting).deriv()(phi)
             if line:
-                sigma = slope(x, fit.torque(log.setting, x), phi, half_width)
+                sigma = slope(x, fit.at(log.setting)(x), phi, half_width)
             errors.append(abs(100 * (sigma / slope(x, y, phi, half_width) - 1)))
     return max(errors)
 
@@ -237,7 +222,7 @@ def stiffness_table(measured: Sequence[Log], general: Fit, odd: Fit) -> str:
             truth = slope(*log.mean_curve(), phi, HALF_WIDTH)
             cells = [
                 f"{sigma:.0f} ({100 * (sigma / truth - 1):+.1f} %)"
-                for sigma in (fit.stiffness(log.setting, phi) for fit in (general, odd))
+                for sigma in (fit.at(log.setting).deriv()(phi) for fit in (general, odd))
             ]
             rows.append(f"| {log.setting} | {phi:+.1f} | {truth:.0f} | {' | '.join(cells)} |")
     for width in (0.02, 0.04, HALF_WIDTH, 0.055, 0.06, 0.065, 0.07):
@@ -262,7 +247,7 @@ def draw(measured: Sequence[Log], general: Fit, odd: Fit) -> Figure:
             (general, "#0072B2", "-", "general basis, RMS"),
         ):
             label = f"{name}: {log.rms(fit):.1f} %"
-            axes.plot(x, fit.torque(log.setting, x), color=color, linestyle=line, label=label)
+            axes.plot(x, fit.at(log.setting)(x), color=color, linestyle=line, label=label)
         axes.set_title(f"support at {log.setting} mm", fontsize=10)
         axes.grid(color="#dddddd", linewidth=0.6)
         axes.legend(fontsize=7.5, loc="upper left")
@@ -272,7 +257,7 @@ def draw(measured: Sequence[Log], general: Fit, odd: Fit) -> Figure:
 
 def main(figure: str) -> None:
     """Prints the tables and draws the figure."""
-    measured = logs(folder())
+    measured = logs(data_folder("desr", "desr_x00.csv"))
     general, odd = (replay(measured, symmetric) for symmetric in (False, True))
     print(torque_table(measured, general, odd, leave_one_out(measured)))
     print(stiffness_table(measured, general, odd))

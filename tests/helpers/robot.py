@@ -93,11 +93,6 @@ class Axis:
     """What `sigmahat validate --json` says of run b with a, and of a with b."""
 
 
-def folder() -> Path:
-    """The folder with the data. Raises FileNotFoundError if there is none."""
-    return data_folder("kr300", "kr300_a.csv")
-
-
 def study(number: int, data: Path, place: Path) -> Axis:
     """Runs the commands for an axis, in an empty folder."""
     estimated = []
@@ -176,10 +171,9 @@ def table(axes: Sequence[Axis]) -> str:
     return "\n".join(lines)
 
 
-def table_and_figure(picture: Path) -> None:
+def main(picture: Path) -> None:
     """Prints the table and draws the figure."""
-    data = folder()
-    axes = []
+    data, axes = data_folder("kr300", "kr300_a.csv"), []
     for number in AXES:
         with tempfile.TemporaryDirectory() as place:
             axes.append(study(number, data, Path(place)))
@@ -188,4 +182,4 @@ def table_and_figure(picture: Path) -> None:
 
 
 if __name__ == "__main__":
-    table_and_figure(Path(sys.argv[1]))
+    main(Path(sys.argv[1]))

@@ -1,14 +1,11 @@
 """Logs, configurations and plans as no recorder writes them: mutated and made up, for fuzzing."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from hypothesis import strategies as st
 
 import confined
-from confined import Done
 from recorded_logs import CONFIGURATION, plain_log, write_log
 
 _WORDS = "0 -1 1e999 -1e-999 nan inf 1e308 5e-324 1e-12 0x7f 1e300 true [1,2] {a=1} 1979-05-27 []"
@@ -98,23 +95,21 @@ def odd_plans(draw: st.DrawFn) -> bytes:
     return "\n".join([*lines, f'estimator.y = "{ends}"', "unknown.z = 1"]).encode()
 
 
-@dataclass(frozen=True)
-class Trial:
-    """A command, and the files that it finds in its folder."""
+Trial = tuple[str, dict[str, bytes]]
+"""A command, and the files that it finds in its folder."""
 
-    arguments: tuple[str, ...]
-    files: Mapping[str, bytes]
 
-    def run(self) -> Done:
-        """Runs the command; its folder is removed."""
-        with TemporaryDirectory() as folder:
-            for name, content in self.files.items():
-                Path(folder, name).write_bytes(content)
-            return confined.run(Path(folder), *self.arguments)
+def complaint_of(trial: Trial) -> str | None:
+    """What a command did that no file may make it do; its folder is removed."""
+    command, files = trial
+    with TemporaryDirectory() as folder:
+        for name, content in files.items():
+            Path(folder, name).write_bytes(content)
+        return confined.run(Path(folder), *command.split()).complaint()
 
 
 def _trial(command: str, log: bytes, configuration: bytes) -> Trial:
-    return Trial(tuple(command.split()), {"log": log, "log.toml": configuration})
+    return command, {"log": log, "log.toml": configuration}
 
 
 _LOGS = st.one_of(damaged_logs(), odd_tables())
@@ -124,6 +119,6 @@ TRIALS = st.one_of(
     st.builds(_trial, st.sampled_from(["check log", "identify log --dry-run"]), _LOGS, _GOOD),
     st.builds(_trial, st.just("check log"), _USUAL, odd_configurations()),
     st.builds(_trial, st.just("estimate log"), _USUAL, odd_configurations()),
-    st.builds(lambda plan: Trial(("sweep", "plan.toml"), {"plan.toml": plan}), odd_plans()),
+    st.builds(lambda plan: ("sweep plan.toml", {"plan.toml": plan}), odd_plans()),
 )
 """Commands with logs, configurations and plans that are damaged or made up."""

@@ -3,7 +3,6 @@
 The requirements were chosen after a first look at the data: see docs/real-joint.md.
 """
 
-import os
 import re
 import subprocess
 import sys
@@ -16,6 +15,7 @@ import real_joint
 from command_line import Shell
 from real_joint import SETTINGS, Fit, Log, M, N
 from recorded_logs import read_estimate
+from shared_data import data_folder
 from sigmahat.checks.check import check
 from sigmahat.fmi.instance import Value
 from sigmahat.logs.configuration import Configuration, Port, Time
@@ -26,12 +26,7 @@ Logs = list[Log]
 
 @pytest.fixture(scope="module")
 def data() -> Path:
-    try:
-        return real_joint.folder()
-    except FileNotFoundError as error:
-        if "SIGMAHAT_DESR" in os.environ:
-            raise
-        pytest.skip(str(error))
+    return data_folder("desr", "desr_x00.csv")
 
 
 @pytest.fixture(scope="module")
@@ -70,7 +65,7 @@ def test_the_recursion_ends_at_the_batch_fit(measured: Logs, general: Fit) -> No
     batch = Fit(False, eta, 0.0, 0.0)
     for log in measured:
         span = np.ptp(log.torque)
-        difference = general.torque(log.setting, log.phi) - batch.torque(log.setting, log.phi)
+        difference = general.at(log.setting)(log.phi) - batch.at(log.setting)(log.phi)
         assert np.max(np.abs(difference)) < 1e-4 * span
 
 

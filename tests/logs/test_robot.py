@@ -3,25 +3,20 @@
 The requirements are those of the issue that asked for it; intervals are of 95 %.
 """
 
-import os
 from collections.abc import Callable
 
 import pytest
 
 import robot
 from command_line import working_in
+from shared_data import data_folder
 
 Study = Callable[[int], robot.Axis]
 
 
 @pytest.fixture(scope="module")
 def study(tmp_path_factory: pytest.TempPathFactory) -> Study:
-    try:
-        data = robot.folder()
-    except FileNotFoundError as error:
-        if "SIGMAHAT_KR300" in os.environ:
-            raise
-        pytest.skip(str(error))
+    data = data_folder("kr300", "kr300_a.csv")
 
     def run(number: int) -> robot.Axis:
         folder = tmp_path_factory.mktemp("axis")
