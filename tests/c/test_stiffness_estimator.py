@@ -273,16 +273,16 @@ def compare(got: np.ndarray[Any, Any], want: oracle.Estimate, torque: Array) -> 
     relative to the range of the torque. eta is compared as a vector, its entries scaled by their
     largest values.
     """
-    n, m = want.eta.shape[1:]
+    n, m = want["eta"].shape[1:]
     scales = {"epsilon": float(np.ptp(torque))}
     errors = {
         name: oracle.relative_error(got[name], values, scales.get(name))
-        for name, values in vars(want).items()
+        for name, values in want.items()
         if name != "eta"
     }
-    largest = np.max(np.abs(want.eta), axis=0)
-    error = np.max(np.abs(got["eta"][:, :n, :m] - want.eta) / largest, axis=(1, 2))
-    size = np.max(np.abs(want.eta) / largest, axis=(1, 2))
+    largest = np.max(np.abs(want["eta"]), axis=0)
+    error = np.max(np.abs(got["eta"][:, :n, :m] - want["eta"]) / largest, axis=(1, 2))
+    size = np.max(np.abs(want["eta"]) / largest, axis=(1, 2))
     errors["eta"] = float(np.max(error / np.maximum(size, 1e-6)))
     assert max(errors.values()) < 1e-9, errors
     assert np.all(got["misfit"] == 1) and np.all(got["B_hat"] == DEFAULTS["motor.B"])
@@ -300,7 +300,7 @@ def test_table1_against_the_oracle(
     values = {"modality": modality, "filter.kind": filter_kind, **RLS[rls_kind]}
     got = Estimator(c, {**DEFAULTS, **values}).run(recording.measurements()[:BEGIN])
     torque = {
-        RESIDUAL: want.tau_e_residual,
+        RESIDUAL: want["tau_e_residual"],
         SENSOR: recording.tau_e_sensor[:BEGIN],
         MODEL: recording.true_tau_e[:BEGIN],
     }[modality]
@@ -336,5 +336,5 @@ def test_other_parameters_against_the_oracle(c: Library, changes: Mapping[str, A
     values = {**DEFAULTS, **changes}
     eta_0 = ETA_0[:6, :3] if "rls.eta_0" in changes else None
     want = oracle.estimator(values, z, [{}], eta_0)[0]
-    torque = z[:, 4] if values["modality"] == SENSOR else want.tau_e_residual
+    torque = z[:, 4] if values["modality"] == SENSOR else want["tau_e_residual"]
     compare(Estimator(c, values).run(z), want, torque)

@@ -30,6 +30,7 @@ from dense_signals import (
     resolution,
     through,
 )
+from oracle import solve
 
 Long = NDArray[np.longdouble]
 SIDES = 2
@@ -63,15 +64,7 @@ def identity(n: int) -> Long:
 
 def inverse(matrix: Long) -> Long:
     """Inverse of a positive definite matrix."""
-    size = len(matrix)
-    both = np.hstack([matrix, identity(size)])
-    for i in range(size):
-        both[i] /= both[i, i]
-        factor = both[:, i].copy()
-        factor[i] = 0
-        both -= np.outer(factor, both[i])
-    result: Long = both[:, size:]
-    return result
+    return solve(matrix, identity(len(matrix)))
 
 
 class Information:

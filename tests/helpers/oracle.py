@@ -11,6 +11,7 @@ Parameters are a flat mapping from the names of the FMU to values.
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 import gmpy2
 import numpy as np
@@ -18,6 +19,7 @@ from numpy.typing import NDArray
 
 Exact = NDArray[np.object_]  # of gmpy2.mpfr
 Array = NDArray[np.float64]
+Numbers = TypeVar("Numbers", NDArray[np.object_], NDArray[np.longdouble])
 Value = float | int
 Parameters = Mapping[str, Value]
 
@@ -163,10 +165,9 @@ def least_squares(
     return Regression(etas, epsilons, rhos, factors, variances, P)
 
 
-def solve(matrix: Exact, right: Exact) -> Exact:
+def solve(matrix: Numbers, right: Numbers) -> Numbers:
     """Solution of a symmetric positive definite system, by elimination."""
-    A: Exact = matrix.copy()
-    b: Exact = right.copy()
+    A, b = matrix.copy(), right.copy()
     size = len(A)
     for j in range(size):
         factors = A[j + 1 :, j] / A[j, j]
@@ -190,22 +191,8 @@ def relative_error(got: Array, want: Array, scale: float | Array | None = None) 
     return float(np.max(error / np.where(floor > 0, floor, np.finfo(float).tiny)))
 
 
-@dataclass(frozen=True)
-class Estimate:
-    """Outputs of every tick [size: ticks], and eta [size: ticks x n x m]."""
-
-    sigma: Array
-    sigma_std: Array
-    tau_e: Array
-    tau_e_std: Array
-    tau_e_residual: Array
-    theta_dot: Array
-    phi: Array
-    setPoint: Array
-    a: Array
-    rho: Array
-    epsilon: Array
-    eta: Array
+Estimate = Mapping[str, Array]
+"""Outputs of every tick by name [size: ticks], and eta [size: ticks x n x m]."""
 
 
 def estimator(
@@ -255,19 +242,19 @@ def estimator(
     unit = factor if p["rls.kind"] == ENHANCED else 1.0  # variance over P, for a noise of 1 N.m
     of_tau_e, of_sigma = np.sqrt(unit * rounded(regression.variances)).T
     return [
-        Estimate(
-            sigma_std=noise[i] * of_sigma,
-            tau_e_std=noise[i] * of_tau_e,
-            sigma=rounded((dF * regression.eta[:, :, i]).sum(axis=1)),
-            tau_e=rounded((F * regression.eta[:, :, i]).sum(axis=1)),
-            tau_e_residual=rounded(residual),
-            theta_dot=rounded(velocity),
-            phi=rounded(phi),
-            setPoint=rounded(set_point),
-            a=rounded(regression.a),
-            rho=rounded(regression.rho),
-            epsilon=rounded(regression.epsilon[:, i]),
-            eta=rounded(regression.eta[:, :, i]).reshape(-1, m, n).transpose(0, 2, 1),
-        )
+        {
+            "sigma_std": noise[i] * of_sigma,
+            "tau_e_std": noise[i] * of_tau_e,
+            "sigma": rounded((dF * regression.eta[:, :, i]).sum(axis=1)),
+            "tau_e": rounded((F * regression.eta[:, :, i]).sum(axis=1)),
+            "tau_e_residual": rounded(residual),
+            "theta_dot": rounded(velocity),
+            "phi": rounded(phi),
+            "setPoint": rounded(set_point),
+            "a": rounded(regression.a),
+            "rho": rounded(regression.rho),
+            "epsilon": rounded(regression.epsilon[:, i]),
+            "eta": rounded(regression.eta[:, :, i]).reshape(-1, m, n).transpose(0, 2, 1),
+        }
         for i, (velocity, residual, _) in enumerate(signals)
     ]

@@ -51,44 +51,28 @@ class Joint:
     The motor data are the defaults of the estimator.
     """
 
-    duration: float = 10.0
-    """[s]"""
-    frequency: float = 1.0
-    """Frequency of the motor [Hz]."""
-    amplitude: float = 0.8
-    """Amplitude of the motor [rad]."""
-    deformation: float = 0.02
-    """Amplitude of phi, at 1.3 times the frequency [rad]."""
+    duration: float = 10.0  # [s]
+    frequency: float = 1.0  # of the motor [Hz]
+    amplitude: float = 0.8  # of the motor [rad]
+    deformation: float = 0.02  # amplitude of phi, at 1.3 times the frequency [rad]
     B: float = B
     D_theta: float = D_THETA
     gamma: float = GAMMA
     tau_coulomb: float = 0.0
-    coulomb_velocity: float = 0.02
-    """Velocity at which the Coulomb friction is nearly whole [rad/s]."""
-    stiffness: Callable[[Array], Array] = np.ones_like
-    """Stiffness over time [s], relative to the AwAS."""
-    counts: float = 40000.0
-    """Counts per turn of the encoders; 0: no rounding."""
-    noise: float = 10**-2.5
-    """Standard deviation of the motor torque [N.m]."""
+    coulomb_velocity: float = 0.02  # at which the Coulomb friction is nearly whole [rad/s]
+    stiffness: Callable[[Array], Array] = np.ones_like  # over time [s], relative to the AwAS
+    counts: float = 40000.0  # per turn of the encoders; 0: no rounding
+    noise: float = 10**-2.5  # standard deviation of the motor torque [N.m]
     seed: int = 1
 
-    bias: float = 0.0
-    """Constant torque [N.m]."""
-    load_friction: float = 0.0
-    """Friction per flexibility torque [1]."""
-    delay: float = 0.0
-    """By which the torque is recorded late [s]."""
-    eccentric: float = 0.0
-    """Amplitude of the once-per-turn error of the link encoder [rad]."""
-    damping: float = 0.0
-    """Of the spring [N.m.s/rad]."""
-    hysteresis: float = 0.0
-    """Half the height of the loop [N.m]."""
-    hysteresis_width: float = 0.02 * RANGE
-    """Deformation from the middle of the loop to its end [rad]."""
-    gap: float = 0.0
-    """Half the dead zone [rad]."""
+    bias: float = 0.0  # constant torque [N.m]
+    load_friction: float = 0.0  # per flexibility torque [1]
+    delay: float = 0.0  # by which the torque is recorded late [s]
+    eccentric: float = 0.0  # amplitude of the once-per-turn error of the link encoder [rad]
+    damping: float = 0.0  # of the spring [N.m.s/rad]
+    hysteresis: float = 0.0  # half the height of the loop [N.m]
+    hysteresis_width: float = 0.02 * RANGE  # from the middle of the loop to its end [rad]
+    gap: float = 0.0  # half the dead zone [rad]
 
     @property
     def t(self) -> Array:
