@@ -64,11 +64,10 @@ def error(got: Array, want: oracle.Exact) -> float:
 
 def table1_data() -> tuple[Array, Array]:
     """Regressors and torque of the sensor in Table I [size: ticks x 18, ticks]."""
-    recording = table1_recording()
-    set_point = 100.0 + oracle.DEFAULTS["setPoint.scale"] * recording.theta_c
-    phi = recording.q - recording.theta
-    F, _ = oracle.basis(6, 3, oracle.exact(set_point), oracle.exact(phi))
-    return oracle.rounded(F), recording.tau_e_sensor
+    theta, q, theta_c, _, sensor = table1_recording().measurements().T
+    set_point = 100.0 + oracle.DEFAULTS["setPoint.scale"] * theta_c
+    F, _ = oracle.basis(6, 3, oracle.exact(set_point), oracle.exact(q - theta))
+    return oracle.rounded(F), sensor
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -301,7 +301,7 @@ def test_table1_against_the_oracle(
     got = Estimator(c, {**DEFAULTS, **values}).run(recording.measurements()[:BEGIN])
     torque = {
         RESIDUAL: want["tau_e_residual"],
-        SENSOR: recording.tau_e_sensor[:BEGIN],
+        SENSOR: recording.measured[:BEGIN, 4],
         MODEL: recording.true_tau_e[:BEGIN],
     }[modality]
     compare(got, want, torque)

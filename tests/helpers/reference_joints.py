@@ -147,19 +147,15 @@ def round_to_counts(angle: Array, counts: float) -> Array:
 
 @dataclass(frozen=True)
 class Recording:
-    """Measurements and true signals of a run, each [size: p], sampled at k T."""
+    """Measurements and true signals of a run, sampled at k T."""
 
-    theta: Array  # measured
-    q: Array
-    theta_c: Array
-    tau: Array
-    tau_e_sensor: Array
-    true_tau_e: Array
+    measured: Array  # theta, q, theta_c, tau, tau_e_sensor [size: p x 5]
+    true_tau_e: Array  # [size: p]
     true_sigma: Array
 
     def measurements(self) -> Array:
-        """[size: p x 5] in the order theta, q, theta_c, tau, tau_e_sensor."""
-        return np.column_stack([self.theta, self.q, self.theta_c, self.tau, self.tau_e_sensor])
+        """A copy to change."""
+        return self.measured.copy()
 
 
 def paper_tau(t: Array | float) -> Array:
@@ -185,12 +181,11 @@ def table1_recording() -> Recording:
     noise = np.random.default_rng(1)
     r = lever_arm(theta_c)
     tau_e = flexibility_torque(r, q - theta)
-    return Recording(
-        theta=round_to_counts(theta, 40000),
-        q=round_to_counts(q, 40000),
-        theta_c=round_to_counts(theta_c, 1024),
-        tau=paper_tau(t) + noise.normal(0.0, math.sqrt(1e-5), len(t)),
-        tau_e_sensor=tau_e + noise.normal(0.0, math.sqrt(1e-3), len(t)),
-        true_tau_e=tau_e,
-        true_sigma=stiffness(r, q - theta),
-    )
+    measured = [
+        round_to_counts(theta, 40000),
+        round_to_counts(q, 40000),
+        round_to_counts(theta_c, 1024),
+        paper_tau(t) + noise.normal(0.0, math.sqrt(1e-5), len(t)),
+        tau_e + noise.normal(0.0, math.sqrt(1e-3), len(t)),
+    ]
+    return Recording(np.column_stack(measured), tau_e, stiffness(r, q - theta))
