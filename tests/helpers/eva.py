@@ -45,6 +45,8 @@ def analyse(
     options  of Frama-C
     macros   for the preprocessor
     before   header that every file includes before all others
+
+    AssertionError if Frama-C did not come to its end.
     """
     preprocessor = [
         *(f"-I{folder}" for folder in folders),
@@ -55,7 +57,23 @@ def analyse(
     command = [need("frama-c"), *OPTIONS, "-main", main]
     command += [f"-cpp-extra-args={' '.join(preprocessor)}", *options, *map(str, sources)]
     done = subprocess.run(command, capture_output=True, text=True)
-    return read(done.stdout + done.stderr)
+    text = done.stdout + done.stderr
+    alarms = re.findall(r"^\[eva:alarm\] (\S+?):(\d+): Warning:\s+(.*(?:\n {2,}.*)*)", text, re.M)
+    coverage = re.search(r"statements reached \(out of \d+\): (\d+)% coverage", text)
+    properties = re.findall(
+        r"^ +(?:Assertions|Preconditions) +(\d+) valid +(\d+) unknown +(\d+) invalid", text, re.M
+    )
+    assert coverage is not None and properties, text
+    unproven = sum(int(unknown) + int(invalid) for _, unknown, invalid in properties)
+    assert unproven == 0 or alarms, text  # each of them is an alarm, too
+    return Analysis(
+        alarms=tuple(
+            f"{Path(file).name}:{line}: {' '.join(found.split())}" for file, line, found in alarms
+        ),
+        proven=sum(int(valid) for valid, _, _ in properties),
+        coverage=int(coverage.group(1)),
+        text=text,
+    )
 
 
 def with_fault(source: Path, copy: Path, file: str, code: str, fault: str = "") -> Path:
@@ -73,23 +91,3 @@ def library_source(name: str) -> Path:
         [need("frama-c"), "-print-share-path"], capture_output=True, text=True, check=True
     )
     return Path(done.stdout.strip()) / "libc" / name
-
-
-def read(text: str) -> Analysis:
-    """Reads what Frama-C printed. AssertionError if it did not come to its end."""
-    alarms = re.findall(r"^\[eva:alarm\] (\S+?):(\d+): Warning:\s+(.*(?:\n {2,}.*)*)", text, re.M)
-    coverage = re.search(r"statements reached \(out of \d+\): (\d+)% coverage", text)
-    properties = re.findall(
-        r"^ +(?:Assertions|Preconditions) +(\d+) valid +(\d+) unknown +(\d+) invalid", text, re.M
-    )
-    assert coverage is not None and properties, text
-    unproven = sum(int(unknown) + int(invalid) for _, unknown, invalid in properties)
-    assert unproven == 0 or alarms, text  # each of them is an alarm, too
-    return Analysis(
-        alarms=tuple(
-            f"{Path(file).name}:{line}: {' '.join(found.split())}" for file, line, found in alarms
-        ),
-        proven=sum(int(valid) for valid, _, _ in properties),
-        coverage=int(coverage.group(1)),
-        text=text,
-    )

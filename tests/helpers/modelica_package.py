@@ -31,20 +31,14 @@ def classes() -> Mapping[str, pymoca.ast.Class]:
     """All classes of the package by their names in it, such as "Plants.AwasPlant"."""
     found: dict[str, pymoca.ast.Class] = {}
     for file in FILES:
-        path = [
-            *file.relative_to(PACKAGE).parent.parts,
-            *([] if _is_package(file) else [file.stem]),
-        ]
+        parts = file.relative_to(PACKAGE).with_suffix("").parts
+        path = [part for part in parts if part != "package"]
         within = pymoca.parser.parse(file.read_text(encoding="utf-8")).classes["Sigmahat"]
         for name in path:
             within = within.classes[name]
         if path:
             found |= dict(_with_inner(".".join(path), within))
     return found
-
-
-def _is_package(file: Path) -> bool:
-    return file.name == "package.mo"
 
 
 def _with_inner(name: str, of: pymoca.ast.Class) -> Iterator[tuple[str, pymoca.ast.Class]]:
