@@ -167,7 +167,8 @@ def least_squares(
 
 def solve(matrix: Numbers, right: Numbers) -> Numbers:
     """Solution of a symmetric positive definite system, by elimination."""
-    A, b = matrix.copy(), right.copy()
+    A: Numbers = matrix.copy()
+    b: Numbers = right.copy()
     size = len(A)
     for j in range(size):
         factors = A[j + 1 :, j] / A[j, j]

@@ -193,7 +193,7 @@ def worst(measured: Sequence[Log], fit: Fit, half_width: float, line: bool = Fal
     for log in measured:
         x, y = log.mean_curve()
         for phi in POINTS:
-            sigma = fit.at(log.setting).deriv()(phi)
+            sigma = float(fit.at(log.setting).deriv()(phi))
             if line:
                 sigma = slope(x, fit.at(log.setting)(x), phi, half_width)
             errors.append(abs(100 * (sigma / slope(x, y, phi, half_width) - 1)))

@@ -155,7 +155,7 @@ class Recording:
 
     def measurements(self) -> Array:
         """A copy to change."""
-        return self.measured.copy()
+        return np.array(self.measured)
 
 
 def paper_tau(t: Array | float) -> Array:
