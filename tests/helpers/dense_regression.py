@@ -30,24 +30,15 @@ from dense_signals import (
     resolution,
     through,
 )
-from oracle import solve
+from oracle import DEFAULTS, solve
 
 Long = NDArray[np.longdouble]
 SIDES = 2
 LEAST = 1e-9
 START: Parameters = {  # start values, with rls.n for the AwAS and an unknown inertia
-    **{"method": 2, "modality": 1, "samplePeriod": 1e-3, "torque.held": 0},
-    **{
-        "rls.n": 3,
-        "rls.m": 3,
-        "rls.symmetric": 1,
-        "range.phi": 0.3,
-        "range.setPoint": 100.0,
-        "range.knee": 0.0,
-        "range.knee_2": 0.0,
-    },
-    **{"encoder.theta": 40000.0, "encoder.q": 40000.0, "noise.tau": 3.2e-3, "noise.tau_e": 3.2e-2},
-    **{"motor.D_theta": 1e-3, "motor.B": 2.3e-5, "motor.gamma": 50.0},
+    **DEFAULTS,
+    **{"method": 2, "torque.held": 0, "rls.n": 3, "range.phi": 0.3, "range.setPoint": 100.0},
+    **{"range.knee": 0.0, "range.knee_2": 0.0},
     **{"regression.bandwidth": 350.0, "regression.slow": 0.05, "regression.drift": 0.0},
     **{"regression.memory": 20.0, "prior.tau_e": 45.0, "prior.nominal": 0.0, "prior.D_theta": 0.2},
     **{"prior.B": 0.1, "prior.tau_coulomb": 0.02, "prior.torque_gain": 0.02, "prior.bias": 0.05},
