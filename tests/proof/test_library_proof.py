@@ -56,22 +56,15 @@ def ticks(main: str, real: str, method: int, curve: bool) -> Analysis:
     return library("ticks", main, *options, **macros)
 
 
-def triangle(
-    main: str, real: str, columns: int, folder: Path, of: Path = c_sources.LIBRARY
+def part(
+    name: str, main: str, real: str, folder: Path, of: Path = c_sources.LIBRARY, **sizes: int
 ) -> Analysis:
-    """Analyses information.c from `main` on, in an estimator with so many columns at most."""
+    """Analyses one file, from `main` of its program here on, in an estimator of these sizes."""
+    (source,) = of.rglob(f"{name}.c")
+    sources = [HERE / f"{name}.c", HERE / "mathematics.c", source]
     folders = [with_guards(folder), of, of / "filtered_regression", HERE]
-    sources = [HERE / "information.c", HERE / "mathematics.c", folders[2] / "information.c"]
-    macros = {**MACROS, "SH_REAL": real, "SH_MAX_COLUMNS": columns}
+    macros = {**MACROS, "SH_REAL": real, **sizes}
     return analyse(sources, main, folders, *UNROLLED, macros=macros)
-
-
-def factor(real: str, parameters: int, folder: Path, of: Path = c_sources.LIBRARY) -> Analysis:
-    """Analyses ud_factor.c in an estimator with so many parameters at most."""
-    folders = [with_guards(folder), of, of / "filtered_regression", HERE]
-    sources = [HERE / "ud_factor.c", of / "ud_factor.c"]
-    macros = {**MACROS, "SH_REAL": real, "SH_MAX_N": parameters, "SH_MAX_M": 1}
-    return analyse(sources, "parameters", folders, *UNROLLED, macros=macros)
 
 
 def with_guards(folder: Path) -> Path:
@@ -124,22 +117,25 @@ def test_filtered_regression(main: str, real: str, curve: bool) -> None:
 @pytest.mark.parametrize("real", REALS if ALL else ["double"])
 @pytest.mark.parametrize("columns", range(1, MAX_COLUMNS + 1) if ALL else [7])
 def test_information(columns: int, real: str, tmp_path: Path) -> None:
-    assert_proven(triangle("columns", real, columns, tmp_path), 80 if columns < 6 else 99)
+    found = part("information", "columns", real, tmp_path, SH_MAX_COLUMNS=columns)
+    assert_proven(found, 80 if columns < 6 else 99)
 
 
 def test_rows_of_information(tmp_path: Path) -> None:
-    assert_proven(triangle("rows", "double", MAX_COLUMNS if ALL else 9, tmp_path), 99)
+    most = MAX_COLUMNS if ALL else 9
+    assert_proven(part("information", "rows", "double", tmp_path, SH_MAX_COLUMNS=most), 99)
 
 
 @pytest.mark.parametrize("real", REALS if ALL else ["float"])
 @pytest.mark.parametrize("parameters", range(1, MAX_PARAMETERS + 1) if ALL else [18])
 def test_ud_factor(parameters: int, real: str, tmp_path: Path) -> None:
-    assert_proven(factor(real, parameters, tmp_path), 60 if parameters < 9 else 90)
+    found = part("ud_factor", "parameters", real, tmp_path, SH_MAX_N=parameters, SH_MAX_M=1)
+    assert_proven(found, 60 if parameters < 9 else 90)
 
 
 @pytest.mark.parametrize("real", REALS if ALL else ["float"])
 def test_information_stays_positive(real: str, tmp_path: Path) -> None:
-    assert_proven(triangle("positive", real, 1, tmp_path), 50)
+    assert_proven(part("information", "positive", real, tmp_path, SH_MAX_COLUMNS=1), 50)
 
 
 def test_parameters_that_pass_are_those_of_the_proof() -> None:
@@ -156,8 +152,8 @@ def test_an_index_one_too_far_is_found(tmp_path: Path) -> None:
     code = "for (; j < size; ++j) {\n            const sh_pair s_j"
     fault = code.replace("<", "<=")
     of = with_fault(c_sources.LIBRARY, tmp_path / "c", "ud_factor.c", code, fault)
-    alarms = factor("double", 6, tmp_path, of).alarms
-    assert any(alarm.startswith("ud_factor.c:") and "initialized" in alarm for alarm in alarms)
+    found = part("ud_factor", "parameters", "double", tmp_path, of, SH_MAX_N=6, SH_MAX_M=1)
+    assert any(each.startswith("ud_factor.c:") and "initialized" in each for each in found.alarms)
 
 
 def test_information_that_is_not_checked_is_found(tmp_path: Path) -> None:
@@ -166,5 +162,5 @@ def test_information_that_is_not_checked_is_found(tmp_path: Path) -> None:
         "if (sh_fabs(xi) > 0 && after > SH_SMALLEST_D)",
     )
     of = with_fault(c_sources.LIBRARY, tmp_path / "c", file, check, "if (sh_fabs(xi) > 0)")
-    (alarm,) = triangle("positive", "double", 1, tmp_path, of).alarms
+    (alarm,) = part("information", "positive", "double", tmp_path, of, SH_MAX_COLUMNS=1).alarms
     assert alarm.startswith("information.c:") and "positive" in alarm
