@@ -1,12 +1,13 @@
 """Runs of a plant FMU under given torques."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sigmahat.fmi.master import Plant, Signal, simulate
+import sigmahat
+from sigmahat.fmi.instance import Fmu, Slave
+from sigmahat.fmi.sample_loop import Recorder, SampleLoop, step_times
 
 Array = NDArray[np.float64]
 
@@ -22,19 +23,30 @@ def run_plant(
     torques: Array,
     start: Mapping[str, float] | None = None,
     record: Iterable[str] = (),
+    *,
+    held: bool = False,
 ) -> dict[str, Array]:
     """A plant in communication steps of h [s] under torques [size: steps + 1 x inputs].
 
-    Torques are linear from one row to the next. Gives each recorded variable [size: steps + 1].
+    Torques are linear from one row to the next, or each is held until the next. Gives each
+    recorded variable [size: steps + 1].
     """
-    given: list[Signal] = [partial(_at, column) for column in torques.T]
-    signals = dict(zip(inputs, given, strict=True))
-    plant = Plant(name, start or {}, signals, list(record))
-    return dict(simulate(plant, {}, h, len(torques) - 1).plant.values)
-
-
-def _at(column: Array, t: Array) -> Array:
-    return column
+    steps = len(torques) - 1
+    slopes = np.zeros_like(torques) if held else np.diff(torques, axis=0, append=0.0) / h
+    t = times(h, steps * h)
+    with Fmu(sigmahat.fmu(name)) as fmu, Slave(fmu, "plant") as plant:
+        references = fmu.references(inputs, "input")
+        first = dict(zip(inputs, torques[0].tolist(), strict=True))
+        plant.initialize({**first, **(start or {})})
+        recorder = Recorder(plant, record, steps + 1)
+        loop = SampleLoop()
+        recorder.add_to(loop)
+        loop.set_real(plant, references, np.ascontiguousarray(torques))
+        loop.set_slopes(plant, references, np.ascontiguousarray(slopes))
+        loop.step(plant, step_times(t, h))
+        loop.run(0, steps)
+        recorder.sample(steps)
+    return recorder.columns()
 
 
 def run_awas(
@@ -42,9 +54,11 @@ def run_awas(
     torques: Array,
     start: Mapping[str, float] | None = None,
     record: Iterable[str] = STATES,
+    *,
+    held: bool = False,
 ) -> dict[str, Array]:
     """AwasPlant as in `run_plant`, torques in the order of INPUTS."""
-    return run_plant("AwasPlant", INPUTS, h, torques, start, record)
+    return run_plant("AwasPlant", INPUTS, h, torques, start, record, held=held)
 
 
 def times(h: float, duration: float) -> Array:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fmi_instance import ERROR, OK, Instance
-from plant_runs import INPUTS, QUIET, STATES, relative_error, run_awas, sinusoids, times
+from plant_runs import QUIET, STATES, relative_error, run_awas, sinusoids, times
 from reference_joints import (
     SCREW,
     awas,
@@ -46,16 +46,10 @@ def test_friction_gravity_and_external_torque_enter_as_in_the_equations() -> Non
     assert relative_error(run_awas(h, torques, start), reference).max() < 1e-7
 
 
-def test_held_torques_are_held(plant_fmu: Path) -> None:
-    h, rows = 1e-2, []
+def test_held_torques_are_held() -> None:
+    h = 1e-2
     torques = sinusoids(times(h, 0.5), (0.3, 1.0), (8.0, 1.0), (1.0, 2.0))
-    with Instance(plant_fmu) as fmu:
-        fmu.initialise(QUIET)
-        for k, held in enumerate(torques):
-            rows.append(fmu.get_all([*STATES, "tau_measured"]))
-            fmu.set_all(dict(zip(INPUTS, held, strict=True)))
-            assert fmu.step(k * h, h) == OK
-    run = dict(zip([*STATES, "tau_measured"], np.transpose(rows), strict=True))
+    run = run_awas(h, torques, QUIET, [*STATES, "tau_measured"], held=True)
     reference = [AT_REST]
     for held in torques[:-1]:
         piece = solve(awas({}), h, np.array([held, held]), reference[-1])
