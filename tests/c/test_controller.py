@@ -34,11 +34,6 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("controllers")
 
 
-@pytest.fixture(scope="session")
-def ninja(build: Path) -> Path:
-    return build / "venv" / "bin" / "ninja"
-
-
 def measurements(ticks: int, *, damaged: bool = False) -> NDArray[np.float64]:
     """The first samples of table1. If damaged, some samples are lost and one is too large."""
     z: NDArray[np.float64] = table1_recording().measurements()[:ticks].copy()
@@ -58,11 +53,11 @@ def cost(tree: Path) -> str:
 @each_real
 @pytest.mark.parametrize("configuration", PAPER + REGRESSION)
 def test_a_processor_computes_what_the_host_computes(
-    target: Target, real: str, configuration: str, folder: Path, ninja: Path, tmp_path: Path
+    target: Target, real: str, configuration: str, folder: Path, tmp_path: Path
 ) -> None:
     z = measurements(1300, damaged=True)
     here, there = (
-        replay(cross_build("tests/replay", t, real, ninja, folder), z, configuration, tmp_path)
+        replay(cross_build("tests/replay", t, real, folder), z, configuration, tmp_path)
         for t in (HOST, target)
     )
     assert 0 < np.count_nonzero(here["valid"] == 0) < 30
@@ -77,11 +72,11 @@ def test_a_processor_computes_what_the_host_computes(
 
 @pytest.mark.parametrize("configuration", "abcdeghi")  # not f: noise dominates it, also in double
 def test_single_precision_gives_the_stiffness_of_table1(
-    configuration: str, folder: Path, ninja: Path, tmp_path: Path
+    configuration: str, folder: Path, tmp_path: Path
 ) -> None:
     z = measurements(15001)
     single, double = (
-        replay(cross_build("tests/replay", HOST, real, ninja, folder), z, configuration, tmp_path)
+        replay(cross_build("tests/replay", HOST, real, folder), z, configuration, tmp_path)
         for real in ("float", "double")
     )
     assert single["valid"].all()
@@ -93,10 +88,8 @@ def test_single_precision_gives_the_stiffness_of_table1(
 @pytest.mark.parametrize(
     ("name", "real"), [("Cortex-M4F", "float"), ("Cortex-M7", "float"), ("Cortex-M7", "double")]
 )
-def test_the_example_estimates_its_stiffness_at_1_khz(
-    name: str, real: str, folder: Path, ninja: Path
-) -> None:
-    tree = cross_build("examples/controller", TARGETS[name], real, ninja, folder)
+def test_the_example_estimates_its_stiffness_at_1_khz(name: str, real: str, folder: Path) -> None:
+    tree = cross_build("examples/controller", TARGETS[name], real, folder)
     text = run("cmake", "--build", str(tree), "--target", "run")
     pattern = r"sigma = (\S+) N.m/rad, standard deviation (\S+)\n(\d+) ticks, (\d+) missed"
     printed = re.search(pattern, text)
@@ -109,10 +102,8 @@ def test_the_example_estimates_its_stiffness_at_1_khz(
 @pytest.mark.slow("a Cortex-M4F computes double in software")
 @each_cortex
 @each_real
-def test_memory_and_stack_are_within_their_limits(
-    name: str, real: str, folder: Path, ninja: Path
-) -> None:
-    text = cost(cross_build("examples/controller", TARGETS[name], real, ninja, folder))
+def test_memory_and_stack_are_within_their_limits(name: str, real: str, folder: Path) -> None:
+    text = cost(cross_build("examples/controller", TARGETS[name], real, folder))
     stacks = [int(value) for value in re.findall(r"stack (\d+) bytes", text)]
     (memory,) = re.findall(r"RAM: (\d+) bytes", text)
     assert len(stacks) == 3
@@ -129,14 +120,14 @@ def test_memory_and_stack_are_within_their_limits(
     ],
 )
 def test_smaller_sizes_cost_what_the_page_says(
-    n: int, m: int, columns: int, row: str, folder: Path, ninja: Path
+    n: int, m: int, columns: int, row: str, folder: Path
 ) -> None:
     """The table of seven joints in docs/controller.md. Another compiler may differ a little.
 
     What there is no memory for is refused.
     """
     sizes = (f"SH_MAX_N={n}", f"SH_MAX_M={m}", f"SH_MAX_COLUMNS={columns}")
-    tree = cross_build("examples/controller", TARGETS["Cortex-M4F"], "float", ninja, folder, sizes)
+    tree = cross_build("examples/controller", TARGETS["Cortex-M4F"], "float", folder, sizes)
     text = cost(tree)
     counted = re.search(rf"{row}: (\d+) instructions per tick, at most (\d+)", text)
     memory = re.search(r"RAM: (\d+) bytes", text)
@@ -153,11 +144,9 @@ def test_smaller_sizes_cost_what_the_page_says(
 
 
 @each_real
-def test_the_library_needs_only_memory_and_math_functions(
-    real: str, folder: Path, ninja: Path
-) -> None:
+def test_the_library_needs_only_memory_and_math_functions(real: str, folder: Path) -> None:
     """In single precision it also calls no function of the compiler for double."""
-    tree = cross_build("tests/replay", TARGETS["Cortex-M4F"], real, ninja, folder)
+    tree = cross_build("tests/replay", TARGETS["Cortex-M4F"], real, folder)
     (library,) = tree.rglob("libsigmahat.a")
     symbols = run(need("arm-none-eabi-nm"), str(library))
     assert not re.findall(r" [DdBbCSs] \w+", symbols)  # no globals

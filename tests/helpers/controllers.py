@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from c_sources import REPOSITORY
-from gate import need
+from gate import need, need_of_environment
 
 OUTPUTS = (
     *("sigma", "tau_e", "tau_e_residual", "theta_dot", "phi", "setPoint", "a", "rho", "epsilon"),
@@ -41,7 +41,7 @@ TARGETS = {
 
 @cache
 def cross_build(
-    project: str, target: Target, real: str, ninja: Path, folder: Path, sizes: tuple[str, ...] = ()
+    project: str, target: Target, real: str, folder: Path, sizes: tuple[str, ...] = ()
 ) -> Path:
     """Builds a project of the repository for a target, with SH_REAL = real; the build tree.
 
@@ -53,7 +53,8 @@ def cross_build(
     toolchain = REPOSITORY / "cmake" / "toolchains" / f"{target.toolchain}.cmake"
     run(
         *("cmake", "-S", str(REPOSITORY / project), "-B", str(tree), "-G", "Ninja"),
-        *(f"-DCMAKE_MAKE_PROGRAM={ninja}", "-DCMAKE_BUILD_TYPE=Release", f"-DSH_REAL={real}"),
+        *(f"-DCMAKE_MAKE_PROGRAM={need_of_environment('ninja')}", f"-DSH_REAL={real}"),
+        "-DCMAKE_BUILD_TYPE=Release",
         *(["--toolchain", str(toolchain)] if target.toolchain else []),
         *(f"-D{size}" for size in sizes),
     )

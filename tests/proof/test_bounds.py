@@ -28,8 +28,7 @@ def table(processor: str) -> dict[str, float]:
 def test_the_longest_ticks_are_those_of_the_page(
     name: str, real: str, build: Path, tmp_path: Path
 ) -> None:
-    ninja = build / "venv" / "bin" / "ninja"
-    tree = cross_build("tests/proof/ticks", TARGETS[name], real, ninja, tmp_path)
+    tree = cross_build("tests/proof/ticks", TARGETS[name], real, tmp_path)
     emulator = [part for part in (tree / "emulator.txt").read_text().split(";") if part]
     text = run(*emulator, str(tree / "ticks"))
     found = {}

@@ -72,8 +72,8 @@ static int write_outputs(const sh_estimate *e, FILE *out)
                             e->D_theta_hat,
                             e->B_hat,
                             e->tau_coulomb_hat,
-                            e->confident,
-                            e->valid};
+                            (double)e->confident,
+                            (double)e->valid};
 
     return fwrite(given, sizeof given, 1, out) == 1;
 }
