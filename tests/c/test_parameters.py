@@ -10,6 +10,7 @@ import pytest
 
 from c_library import Library
 from c_sources import REPOSITORY
+from fmi_runs import limits
 from sigmahat.export import c_variables
 
 
@@ -53,28 +54,21 @@ def test_start_values_and_ranges_are_those_of_the_list(c: Library, listed: list[
         value = p
         for part in variable.name.split("."):
             value = getattr(value, part)
-        boolean, choice = variable.type == "Boolean", variable.declaredType
+        boolean = variable.type == "Boolean"
         start = ("false", "true").index(variable.start) if boolean else float(variable.start)
         assert value == start, variable.name
-        low, high = (
-            None if limit is None else float(limit) for limit in (variable.min, variable.max)
-        )
-        if boolean or choice:
-            low, high = (0.0, 1.0) if boolean else (1.0, float(len(choice.items)))
         kind = float if variable.type == "Real" else int
-        for limit, outward in ((low, -math.inf), (high, math.inf)):
-            beyond = outward if limit is None else math.nextafter(limit, outward)
-            if kind is int:
-                assert limit is not None
-                beyond = limit + math.copysign(1.0, outward)
+        edges = [("", 0, -1), ("", 1, 2)] if boolean else list(limits(variable))
+        assert len(edges) == 2
+        for _, limit, beyond in edges:
             found = c.violation(c.parameters({variable.name: kind(beyond)}))
             assert found is not None and found[:2] == (variable.name, beyond)
-            if kind is float:
-                found = c.violation(c.parameters({variable.name: math.nan}))
-                assert found is not None and found[0] == variable.name
-            if limit is not None:
+            if math.isfinite(limit):
                 found = c.violation(c.parameters({variable.name: kind(limit)}))
                 assert found is None or "<" in found[2], found  # a limit by other parameters
+        if kind is float:
+            found = c.violation(c.parameters({variable.name: math.nan}))
+            assert found is not None and found[0] == variable.name
 
 
 @pytest.mark.parametrize("i", range(8))

@@ -10,6 +10,7 @@ import pytest
 
 import sigmahat
 from fmi_instance import ERROR, OK, WARNING, Instance
+from fmi_runs import SIGNALS, names
 
 PAIR = sigmahat.fmu("AntagonisticStiffnessEstimator")
 OUTPUTS = [
@@ -34,24 +35,17 @@ def trio(pair_fmu: Path, fmu: Path, values: dict[str, float]) -> Iterator[list[I
 
 def step(instances: list[Instance], k: int, bad: dict[str, float] | None = None) -> list[int]:
     """Makes one step of 1 ms with the same signals for all instances. Returns their statuses."""
-    t = k * 1e-3
-    q = 0.3 * math.sin(5 * t)
-    sides = [
-        {"theta": q + 0.02 * math.sin(9 * t), "tau": 0.3 * math.cos(5 * t), "tau_e_sensor": 1.0},
-        {"theta": q - 0.3 - 0.02 * math.sin(7 * t), "tau": 0.1, "tau_e_sensor": math.sin(t)},
-    ]
-    pair, *singles = instances
-    pair.set_all({"q": q})
-    for i, (single, values) in enumerate(zip(singles, sides, strict=True), start=1):
-        single.set_all({"q": q, **values})
-        pair.set_all({f"{name}_{i}": value for name, value in values.items()})
-        for name, slope in (("theta", 0.1), ("q", 0.2)):
-            single.set_derivative(name, slope)
-            pair.set_derivative(f"{name}_{i}" if name != "q" else name, slope)
+    t, h = k * 1e-3, 1e-3
+    for fmu, side in zip(instances, ("", "_1", "_2"), strict=True):
+        for name in {*names(fmu, "input")} - {"theta_c"}:
+            signal = SIGNALS.get(name + side, SIGNALS[name])
+            fmu.set_all({name: signal(t)})
+            assert fmu.set_derivative(name, (signal(t + h) - signal(t)) / h) == OK
+    pair, _, two = instances
     for name, value in (bad or {}).items():
         pair.set_all({f"{name}_2": value})
-        singles[1].set_all({name: value})
-    return [instance.step(t, 1e-3) for instance in instances]
+        two.set_all({name: value})
+    return [instance.step(t, h) for instance in instances]
 
 
 def doubt_of_sum(pair: Instance, one: Instance, two: Instance) -> float:
@@ -81,11 +75,10 @@ def test_bit_identical_to_two_estimators(values: dict[str, float], estimator_fmu
             expected = [WARNING, OK, WARNING] if bad else [OK, OK, OK]
             assert statuses == expected
             for i, single in ((1, one), (2, two)):
-                names = [
-                    name.replace("[", f"_{i}[") if "[" in name else f"{name}_{i}"
-                    for name in OUTPUTS
+                of_side = [
+                    f"{n}_{i}" if "[" not in n else n.replace("[", f"_{i}[") for n in OUTPUTS
                 ]
-                assert pair.get_all(names) == single.get_all(OUTPUTS)
+                assert pair.get_all(of_side) == single.get_all(OUTPUTS)
                 for name in ("valid", "confident", "doubt"):
                     assert pair.get(f"{name}_{i}") == single.get(name)
             assert pair.get("sigma") == one.get("sigma") + two.get("sigma")

@@ -1,10 +1,12 @@
-"""Units, enumerations and dependencies in modelDescription.xml, against what the FMU does."""
+"""The XML files of the FMUs: against what the FMUs do, and for FMI 3.0 against the schemas."""
 
 import math
 import zipfile
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import fmpy
 import pytest
 from lxml import etree
 
@@ -13,6 +15,13 @@ from fmi_instance import OK, Instance, unpacked
 from fmi_runs import ESTIMATORS, PLANTS
 
 FMUS = ESTIMATORS + PLANTS
+Twin = Callable[[str], Path]
+SCHEMAS = Path(fmpy.__file__).parent / "schema" / "fmi3"
+FILES = {
+    "modelDescription.xml": "fmi3ModelDescription.xsd",
+    "sources/buildDescription.xml": "fmi3BuildDescription.xsd",
+    "terminalsAndIcons/terminalsAndIcons.xml": "fmi3TerminalsAndIcons.xsd",
+}
 
 # Exponents of the base units in each symbol. A power is written behind a symbol: kg.m2.
 SYMBOLS = {
@@ -31,9 +40,9 @@ def fmu(request: pytest.FixtureRequest) -> Path:
     return sigmahat.fmu(request.param)
 
 
-def read(fmu: Path) -> Any:
+def read(fmu: Path, name: str = "modelDescription.xml") -> Any:
     with zipfile.ZipFile(fmu) as archive:
-        return etree.fromstring(archive.read("modelDescription.xml"))
+        return etree.fromstring(archive.read(name))
 
 
 def powers(unit: str) -> dict[str, int]:
@@ -211,3 +220,65 @@ def test_no_output_depends_on_an_input_at_a_communication_point(fmu: Path) -> No
                 if v.causality == "input":
                     instance.set_all({name: 0.2 + k})
                     assert instance.get_all(outputs) == before
+
+
+# The twins for FMI 3.0
+
+
+def test_every_file_obeys_its_schema(fmu: Path, twin: Twin) -> None:
+    for file, schema in FILES.items():
+        etree.XMLSchema(file=str(SCHEMAS / schema)).assertValid(read(twin(fmu.stem), file))
+
+
+def items_of(variable: Any) -> list[tuple[str, ...]]:
+    return [(item.name, item.value, item.description) for item in variable.declaredType.items]
+
+
+def test_variables_are_those_of_fmi_2(fmu: Path, twin: Twin) -> None:
+    old: Any = fmpy.read_model_description(str(fmu))
+    new: Any = fmpy.read_model_description(str(twin(fmu.stem)))
+    assert (old.guid, old.modelName) == (new.guid, new.modelName)
+    *others, time = new.modelVariables
+    assert (time.name, time.causality) == ("time", "independent")
+    types = {"Real": "Float64", "Integer": "Int32"}
+    keys = "name valueReference causality variability initial start unit nominal min max"
+    for first, variable in zip(old.modelVariables, others, strict=True):
+        assert variable.type == types.get(first.type, first.type)
+        assert list(variable.dimensions) == []
+        for key in (*keys.split(), "displayUnit", "description"):
+            assert getattr(variable, key) == getattr(first, key), (first.name, key)
+        if first.type == "Enumeration":
+            assert items_of(variable) == items_of(first)
+
+
+def test_outputs_depend_on_what_they_depend_on_in_fmi_2(fmu: Path, twin: Twin) -> None:
+    old, new = read(fmu), read(twin(fmu.stem))
+    for part, tag in (("Outputs", "Output"), ("InitialUnknowns", "InitialUnknown")):
+        expected = {
+            int(u.get("index")) - 1: {int(i) - 1 for i in u.get("dependencies").split()}
+            for u in old.iterfind(f"ModelStructure/{part}/Unknown")
+        }
+        found = {
+            int(u.get("valueReference")): set(map(int, u.get("dependencies").split()))
+            for u in new.iterfind(f"ModelStructure/{tag}")
+        }
+        assert found == expected and found
+
+
+@pytest.mark.parametrize("plant", PLANTS)
+def test_the_terminals_of_a_plant_and_its_estimator_belong_together(plant: str, twin: Twin) -> None:
+    terminals, estimator = [], ESTIMATORS[plant == "AntagonisticVsaPlant"]
+    for name in (plant, estimator):
+        root = read(twin(name), "terminalsAndIcons/terminalsAndIcons.xml")
+        (terminal,) = root.iterfind("Terminals/Terminal")
+        assert (terminal.get("name"), terminal.get("matchingRule")) == ("measurements", "bus")
+        members = {m.get("memberName"): m.get("variableName") for m in terminal}
+        causality = {
+            v.get("name"): v.get("causality") for v in read(twin(name)).find("ModelVariables")
+        }
+        assert {causality[variable] for variable in members.values()} == {
+            "output" if name == plant else "input"
+        }
+        terminals.append(set(members))
+    assert terminals[0] <= terminals[1]
+    assert {"q"} < terminals[0]

@@ -3,7 +3,7 @@
 import ctypes
 import math
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +13,7 @@ from fmpy import fmi2
 
 import sigmahat
 from fmi_instance import DISCARD, ERROR, OK, REAL, SIZE, WARNING, Instance, Instance3
-from fmi_runs import ESTIMATORS, PLANTS, Driver, Fmi, names
+from fmi_runs import ESTIMATORS, PLANTS, Driver, Fmi, limits, names
 
 every_fmu = pytest.mark.parametrize("name", ESTIMATORS + PLANTS)
 each_kind = pytest.mark.parametrize("name", [*ESTIMATORS, "AwasPlant"])
@@ -32,20 +32,6 @@ def error_of(fmu: Any) -> str:
 
 # At this limit alone, a relation to another parameter is not met: filter.V_min is not above V_max.
 REFUSED_BY_A_RELATION = {("filter.V_max", "min")}
-
-
-def limits(variable: Any) -> Iterator[tuple[str, float, float]]:
-    """Of a parameter: which limit, the limit, and the next value outside."""
-    lowest, highest = variable.min, variable.max
-    if variable.type == "Enumeration":
-        values = [item.value for item in variable.declaredType.items]
-        lowest, highest = values[0], values[-1]
-    for which, limit, outward in (("min", lowest, -math.inf), ("max", highest, math.inf)):
-        if variable.type == "Real":
-            real = float(outward if limit is None else limit)
-            yield which, real, math.nextafter(real, outward)
-        elif limit is not None:
-            yield which, int(limit), int(limit) + int(math.copysign(1, outward))
 
 
 def initialised(fmu: Instance, name: str, value: float) -> tuple[int, str]:
