@@ -10,27 +10,15 @@ import pytest
 
 import oracle
 from c_library import MEASUREMENTS, Array, Estimator, Library
-from oracle import (
-    CONSTANT_FACTOR,
-    DEFAULTS,
-    ENHANCED,
-    FILTERED,
-    FINITE_DIFFERENCE,
-    KALMAN,
-    MODEL,
-    MODIFIED_KALMAN,
-    RESIDUAL,
-    SENSOR,
-    STANDARD,
-)
+from oracle import DEFAULTS, FILTERED, MODEL, RESIDUAL, SENSOR
 from reference_joints import flexibility_torque, lever_arm, table1_recording
 
 MODALITIES = (RESIDUAL, SENSOR, MODEL)
-FILTERS = (MODIFIED_KALMAN, KALMAN, FINITE_DIFFERENCE)
+FILTERS = (oracle.MODIFIED_KALMAN, oracle.KALMAN, oracle.FINITE_DIFFERENCE)
 RLS: dict[int, Mapping[str, float]] = {
-    ENHANCED: {"rls.kind": ENHANCED},
-    STANDARD: {"rls.kind": STANDARD, "rls.P_0": 1.0},
-    CONSTANT_FACTOR: {"rls.kind": CONSTANT_FACTOR, "rls.P_0": 1.0},
+    oracle.ENHANCED: {"rls.kind": oracle.ENHANCED},
+    oracle.STANDARD: {"rls.kind": oracle.STANDARD, "rls.P_0": 1.0},
+    oracle.CONSTANT_FACTOR: {"rls.kind": oracle.CONSTANT_FACTOR, "rls.P_0": 1.0},
 }
 
 
@@ -109,11 +97,11 @@ def test_outputs_before_the_first_tick(c: Library, symmetric: int) -> None:
     assert np.all(np.array([list(row) for row in estimate.eta])[:6, :3] == eta_0[:6, :3])
 
 
-@pytest.mark.parametrize("kind", [ENHANCED, STANDARD, CONSTANT_FACTOR])
+@pytest.mark.parametrize("kind", RLS)
 def test_paper2011_scales_P_with_the_noise(c: Library, kind: int) -> None:
     estimate = Estimator(c, {"rls.kind": kind, "rls.P_0": 1e20, "rls.c": 1e-18}).estimate
     noise = 50.0 * 3.2e-3  # of gamma r_e [N.m]
-    weight = 1e-18 if kind == ENHANCED else 1.0
+    weight = 1e-18 if kind == oracle.ENHANCED else 1.0
     derivative = [1.0, 100.0, 100.0**2]  # derivative of l^j phi at l = 100
     want = noise * math.sqrt(weight * 1e20 * sum(d * d for d in derivative))
     assert estimate.sigma_std == pytest.approx(want, rel=1e-12)

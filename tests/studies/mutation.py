@@ -34,18 +34,17 @@ LIMIT = 0.5
 REQUIRED = 0.9  # share of the mutants that the tests have to notice
 # For each file, the tests of other files that use it. They are run besides its own tests.
 _REGRESSION = ("regression_oracle", "filtered_regression", "misfit_columns", "evaluate")
-_OF_REGRESSION = (
-    *("columns", "information", "misfit", "motion_sign", "noise", "posterior", "refit", "signals"),
-    "state_variable_filter",
-)
+_OF_REGRESSION = ("columns", "information", "misfit", "noise", "posterior", "refit", "signals")
 USERS = {
     **dict.fromkeys(_OF_REGRESSION, _REGRESSION),
+    **dict.fromkeys(("motion_sign", "state_variable_filter"), ("signals", *_REGRESSION)),
     **dict.fromkeys(("change", "estimator_check"), ()),
     **dict.fromkeys(("filtered_regression_check", "paper2011_check"), ("estimator_check",)),
     **dict.fromkeys(
-        ("kinematic_kalman", "parameters", "torque_basis", "torque_residual"),
-        ("stiffness_estimator",),
+        ("kinematic_kalman", "torque_basis", "torque_residual"),
+        ("paper2011", "stiffness_estimator"),
     ),
+    "parameters": ("stiffness_estimator",),
     "filtered_regression": ("stiffness_estimator", *_REGRESSION),
     "least_squares": ("stiffness_estimator", "evaluate"),
     "method": ("stiffness_estimator", "filtered_regression"),
