@@ -3,9 +3,9 @@ sigmahat_add_packages(coverage)
 file(GLOB tests CONFIGURE_DEPENDS tests/c/test_*.py tests/fmi/test_*.py)
 # These compile programs of their own, without coverage, run no C code, or need more packages.
 list(FILTER tests EXCLUDE REGEX
-     "controller|endurance|library_packages|descriptions_of_fmi3|model_description|mutation|sample_loop|stress")
+     "controller|endurance|library_packages|model_description|mutation|sample_loop|stress")
 file(GLOB promises CONFIGURE_DEPENDS tests/proof/test_promises_of_*.py)
-list(APPEND tests ${promises} tests/plants/test_awas.py tests/plants/test_noise.py)
+list(APPEND tests ${promises} tests/plants/test_plants_of_the_paper.py tests/plants/test_noise.py)
 add_custom_target(
   coverage
   COMMAND

@@ -1,7 +1,7 @@
 """Noise of the plant's sensors, as the FMU gives it."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache
 
@@ -68,11 +68,10 @@ def test_noise_is_standard_normal_white_and_independent_between_channels_and_see
         assert np.abs(streams[lag:].T @ streams[:-lag]).max() / (SAMPLES - lag) < five
 
 
-def measured(h: float, duration: float, start: Mapping[str, float] | None = None) -> Array:
+def measured(h: float, duration: float) -> Array:
     """Noise of unit variance of tau in steps of h [s] [size: duration / h + 1]."""
     torques = np.zeros((round(duration / h) + 1, 3))
-    start = {"noise.tau_variance": 1.0, **(start or {})}
-    return run_awas(h, torques, start, ["tau_measured"])["tau_measured"]
+    return run_awas(h, torques, {"noise.tau_variance": 1.0}, ["tau_measured"])["tau_measured"]
 
 
 @pytest.mark.parametrize("steps_in_a_period", [1, 2, 10])
