@@ -1,23 +1,163 @@
-"""The plants of the Modelica package, run by rumoca, move as their FMUs do."""
+"""The Modelica package: parsers read it, examples compile, blocks and plants work in rumoca.
+
+rumoca calls no C, so functions of Modelica stand in the place of those of C.
+"""
 
 import math
+import re
+import shutil
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pymoca.parser
 import pytest
 import rumoca
 from numpy.typing import NDArray
 
 import sigmahat
 from c_sources import REPOSITORY
-from modelica_package import NO_NOISE, compiled, modification
+from modelica_package import FILES, NO_NOISE, PACKAGE, classes, compiled, modification
 from sigmahat.export.templates import render, variables
 from sigmahat.fmi.master import Plant, simulate
 from sigmahat.fmi.series import Series
 from sigmahat.paper.scenarios import SECTION_VI_B, scenario
 from sigmahat.runs.scenario import Sine, T
+
+SPECIAL = {
+    "sigma": "estimator.reals[3] + t",  # the gear ratio shows whose motor it is
+    "sigma_std": "tau_e_sensor",
+    "phi": "q - theta",
+    "setPoint": "theta_c",
+    "epsilon": "tau",
+    "eta": "zeros(8, 5)",
+    "doubt": "if theta > 2 then Types.Doubt.OutOfRange elseif theta > 1 then Types.Doubt.Misfit"
+    " else Types.Doubt.None",
+    "confident": "true",
+    "valid": "theta < 10",
+}
+"""What the function gives for some outputs; every other one is its place in the list of them."""
+
+
+def outputs() -> list[str]:
+    tick = classes()["Estimators.Internal.tick"]
+    return [name for name, each in tick.symbols.items() if "output" in each.prefixes]
+
+
+@pytest.fixture(scope="module")
+def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The package with a record for the external object, and an algorithm for a tick."""
+    copy = tmp_path_factory.mktemp("package") / "Sigmahat"
+    shutil.copytree(PACKAGE, copy)
+    file = copy / "Estimators" / "Internal.mo"
+    text = file.read_text(encoding="utf-8")
+    constructor = text[text.index("function constructor") : text.index("output Estimator")]
+    fields = re.findall(r"^ *input (.*;)", constructor, re.MULTILINE)
+    record = f"record Estimator {' '.join(fields)} end Estimator;"
+    given = " ".join(
+        f"{name} := {SPECIAL.get(name, number)};" for number, name in enumerate(outputs())
+    )
+    text, objects = re.subn(r"class Estimator .*?end Estimator;", record, text, flags=re.DOTALL)
+    text, calls = re.subn(
+        r'external "C" sigmahat_estimator_tick.*?C-Sources"\);',
+        lambda _: f"algorithm {given}",
+        text,
+        flags=re.DOTALL,
+    )
+    assert (objects, calls) == (1, 1)
+    file.write_text(text.replace("impure function tick", "function tick"), encoding="utf-8")
+    return copy
+
+
+def simulated(package: Path, block: str, values: Mapping[str, str], changed: str) -> Any:
+    """A block under inputs that are expressions, for 50 ms."""
+    equations = " ".join(f"b.{name} = {value};" for name, value in values.items())
+    text = f"model Test Sigmahat.Estimators.{block} b({changed}); equation {equations} end Test;"
+    return compiled(text, package=package).simulate(t=(0.0, 0.05), dt=1e-3)
+
+
+def test_two_parsers_read_every_file_without_error() -> None:
+    for file in FILES:
+        assert [each.message for each in rumoca.validate(file)] == []
+        assert pymoca.parser.parse(file.read_text(encoding="utf-8")) is not None
+
+
+@pytest.mark.parametrize(
+    "example", sorted({file.stem for file in (PACKAGE / "Examples").glob("*.mo")} - {"package"})
+)
+def test_an_example_compiles(example: str, package: Path) -> None:
+    text = f"model Test extends Sigmahat.Examples.{example}; end Test;"
+    assert compiled(text, package=package)
+
+
+def test_the_model_of_the_page_compiles(package: Path) -> None:
+    page = (REPOSITORY / "docs" / "how-to" / "modelica.md").read_text(encoding="utf-8")
+    ((text, name),) = re.findall(r"```modelica\n(model (\w+)\n.*?)```", page, re.DOTALL)
+    assert compiled(text, name, package)
+
+
+def test_ticks_are_at_the_start_time_and_every_sample_period_after_it(package: Path) -> None:
+    inputs = {"theta": "time", "q": "3*time", "theta_c": "0", "tau": "0", "tau_e_sensor": "0"}
+    changed = "samplePeriod=0.01, startTime=0.005"
+    found = simulated(package, "StiffnessEstimator", inputs, changed)
+    for moment in (0.002, 0.0052, 0.0148, 0.0152, 0.0448):
+        row = int(np.searchsorted(found.time, moment + 1e-9)) - 1
+        last = 0.005 + 0.01 * np.floor((moment - 0.005) / 0.01) if moment > 0.005 else None
+        # The value before the first tick is the start value.
+        assert found["b.sigma"][row] == pytest.approx(0 if last is None else 50 + last)
+        assert found["b.phi"][row] == pytest.approx(0 if last is None else 2 * last)
+
+
+def test_every_output_and_input_has_its_place(package: Path) -> None:
+    inputs = {"theta": "0.1", "q": "0.3", "theta_c": "7", "tau": "8", "tau_e_sensor": "9"}
+    found = simulated(package, "StiffnessEstimator", inputs, "motor(gamma=60)")
+    expected = {"sigma": 60.05, "sigma_std": 9, "phi": 0.2, "setPoint_used": 7, "epsilon": 8}
+    for number, name in enumerate(outputs()):
+        if name not in SPECIAL:
+            expected[name] = number
+    for name, value in {**expected, "doubt": 1, "confident": 1, "valid": 1}.items():
+        assert found[f"b.{name}"][-1] == pytest.approx(value), name
+
+
+NONE, NOT_EXCITED, MISFIT, OUT_OF_RANGE = 1, 3, 4, 5
+
+
+@pytest.mark.parametrize(
+    ("theta", "sigma_std", "doubt"),
+    [
+        ((0.1, 0.1), 1.0, NONE),
+        ((0.1, 0.1), 100.0, NOT_EXCITED),
+        ((1.5, 0.1), 1.0, NONE),  # that one side is not certain enough is no reason
+        ((1.5, 0.1), 100.0, MISFIT),
+        ((0.1, 2.5), 1.0, OUT_OF_RANGE),
+        ((1.5, 2.5), 100.0, OUT_OF_RANGE),
+    ],
+)
+def test_the_device_is_the_sum_of_its_sides(
+    theta: tuple[float, float], sigma_std: float, doubt: int, package: Path
+) -> None:
+    """As fmu_src/AntagonisticStiffnessEstimator.c judges it."""
+    inputs = {
+        **{f"theta_{i}": str(value) for i, value in enumerate(theta, start=1)},
+        **{"q": "0.3", "tau_1": "0.1", "tau_2": "0.2"},
+        **{"tau_e_sensor_1": str(sigma_std), "tau_e_sensor_2": "0.5"},
+    }
+    changed = "motor_1(gamma=60), motor_2(gamma=70)"
+    found = simulated(package, "AntagonisticStiffnessEstimator", inputs, changed)
+    last = {name.removeprefix("b."): found[name][-1] for name in found.names}
+    assert last["sigma"] == pytest.approx(60.05 + 70.05)
+    assert (last["sigma_1"], last["sigma_2"]) == pytest.approx((60.05, 70.05))
+    assert last["sigma_std"] == pytest.approx(np.hypot(sigma_std, 0.5))
+    assert (last["side_1.phi"], last["side_2.phi"]) == pytest.approx(
+        (0.3 - theta[0], 0.3 - theta[1])
+    )
+    assert (last["side_1.epsilon"], last["side_2.epsilon"]) == pytest.approx((0.1, 0.2))
+    assert (last["doubt"], last["confident"], last["valid"]) == (doubt, doubt == NONE, True)
+
+
+# The plants move as their FMUs do
 
 AGREEMENT = 1e-6
 """Greatest difference of a state, relative to its range."""
