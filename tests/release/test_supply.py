@@ -1,9 +1,11 @@
-"""The bill of materials of the release; archives that are the same wherever they are packed."""
+"""Wheels and bill of materials of the release; archives are the same wherever they are packed."""
 
 import hashlib
 import json
 import os
 import shutil
+import sys
+import sysconfig
 from pathlib import Path
 from typing import Any
 from zipfile import ZipFile
@@ -13,11 +15,14 @@ from cyclonedx.schema import SchemaVersion
 from cyclonedx.validation.json import JsonStrictValidator
 
 import sigmahat
+from controllers import run
 from released_fmus import FMUS
 from sigmahat.export import bill, distribution, modelica
 
 REPOSITORY = Path(__file__).parents[2]
 OLD = 86400.0  # [s] since 1970
+EXTENSIONS = {"manylinux_2_17_x86_64": ".so", "win_amd64": ".dll", "macosx_11_0_x86_64": ".dylib"}
+each_platform = pytest.mark.parametrize("tag", EXTENSIONS)
 
 
 @pytest.fixture(scope="module")
@@ -105,3 +110,68 @@ def test_the_wheels_made_elsewhere_are_the_same(
     distribution.write(tmp_path / "python", REPOSITORY, contents, [], [], tmp_path)
     for file in (released / "python").glob("*.whl"):
         assert (tmp_path / "python" / file.name).read_bytes() == file.read_bytes(), file.name
+
+
+# The wheels and the source distribution, read from the files
+
+
+def wheel(released: Path, tag: str) -> Path:
+    return released / "python" / f"sigmahat-{sigmahat.__version__}-py3-none-{tag}.whl"
+
+
+def test_there_is_a_wheel_for_each_platform_and_the_sources(released: Path) -> None:
+    expected = {wheel(released, tag).name for tag in EXTENSIONS}
+    expected.add(f"sigmahat-{sigmahat.__version__}.tar.gz")
+    assert {path.name for path in (released / "python").iterdir()} == expected
+
+
+@each_platform
+def test_a_wheel_contains_the_released_fmus_and_its_library(tag: str, released: Path) -> None:
+    with ZipFile(wheel(released, tag)) as archive:
+        files = {
+            Path(name).name: archive.read(name)
+            for name in archive.namelist()
+            if name.startswith("sigmahat/fmus/")
+        }
+        assert "sigmahat/py.typed" in archive.namelist()
+        assert not any("__pycache__" in name for name in archive.namelist())
+    native = {f"sigmahat_native{EXTENSIONS[tag]}"}
+    assert files.keys() == {*(f"{name}.fmu" for name in FMUS), "sigmahat-awas.ssp", *native}
+    for name in files.keys() - native:
+        assert files[name] == (released / name).read_bytes()
+
+
+@each_platform
+def test_the_record_of_a_wheel_is_right(tag: str, released: Path, tmp_path: Path) -> None:
+    """`wheel unpack` compares every file with its hash."""
+    run(sys.executable, "-m", "wheel", "unpack", "-d", tmp_path, wheel(released, tag))
+    (kind,) = tmp_path.glob("*/*.dist-info/WHEEL")
+    text = kind.read_text()
+    assert f"Tag: py3-none-{tag}\n" in text and "Root-Is-Purelib: false\n" in text
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="the wheel of this machine")
+def test_from_the_wheel_of_linux_the_estimator_gives_the_same_bits(
+    released: Path, tmp_path: Path
+) -> None:
+    with ZipFile(wheel(released, "manylinux_2_17_x86_64")) as archive:
+        archive.extractall(tmp_path)
+    program = """
+import json, math, sys
+sys.path += sys.argv[1:]
+import sigmahat
+run = sigmahat.run(sigmahat.scenario("single-linear"), seed=1)
+theta = [math.sin(0.01 * k) for k in range(2000)]
+estimator = sigmahat.Estimator({"method": "FilteredRegression", "range.phi": 0.002})
+sigma = estimator.run(theta, [1.002 * x for x in theta], [-0.04 * x for x in theta])["sigma"]
+print(json.dumps([sigmahat.__file__, run.estimators["RESIDUAL"]["sigma"].tolist(), sigma.tolist()]))
+"""
+    found = []
+    packages = sysconfig.get_path("purelib")
+    # Without "site" the package of this tree is on no path.
+    for command in (["-S", "-c", program, tmp_path, packages], ["-c", program]):
+        found.append(json.loads(run(sys.executable, *command)))
+    assert Path(found[0][0]).is_relative_to(tmp_path)
+    assert not Path(found[1][0]).is_relative_to(tmp_path)
+    assert found[0][1:] == found[1][1:]
+    assert len(set(found[0][2])) > 100
