@@ -1,4 +1,4 @@
-"""The table and the CSV files."""
+"""The results as files: the table, the series, and the figures with their labels and units."""
 
 import csv
 import re
@@ -7,12 +7,24 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+from PIL import Image
 
 from recordings import one_seed
-from sigmahat.paper.reproduction import conditions, table, write_series, write_table
+from sigmahat.paper.figures.catalogue import FIGURES
+from sigmahat.paper.reproduction import Result, conditions, table, write_series, write_table
+from sigmahat.paper.scenarios import SCENARIOS
+from sigmahat.plotting.save import save
 from sigmahat.runs.metrics import Indices
 
 ROWS = ["MODEL", "SENSOR", "RESIDUAL", "MODEL-measured"]
+# One scenario of each kind, and its figures.
+DRAWN = [
+    (scenario, name)
+    for scenario in ("table1", "experiment", "single-hardening", "antagonistic")
+    for name in SCENARIOS[scenario].figures
+]
 
 
 def test_series_file_has_units_and_the_exact_values(tmp_path: Path) -> None:
@@ -36,30 +48,33 @@ def test_series_file_has_units_and_the_exact_values(tmp_path: Path) -> None:
         np.testing.assert_array_equal(numbers[:, head.index(title)], values)
 
 
+def rows_of_table(result: Result, folder: Path) -> dict[str, dict[str, str]]:
+    """The rows of the file of the table, by the estimation."""
+    write_table(result, folder / "table.csv")
+    with (folder / "table.csv").open(newline="") as file:
+        return {row["estimation"]: row for row in csv.DictReader(file)}
+
+
 def test_table_file_of_one_seed(tmp_path: Path) -> None:
     result = one_seed("table1")
-    write_table(result, tmp_path / "table.csv")
-    with (tmp_path / "table.csv").open(newline="") as file:
-        rows = list(csv.DictReader(file))
-    assert [row["estimation"] for row in rows] == ROWS
-    for row in rows:
-        expected = result.indices[0][row["estimation"]]
+    rows = rows_of_table(result, tmp_path)
+    assert list(rows) == ROWS
+    for name, row in rows.items():
+        expected = result.indices[0][name]
         assert float(row["MSE [(N.m/rad)2]"]) == expected.mse
         assert float(row["MSREP [%]"]) == expected.msrep
         assert float(row["MSREP after 1 s [%]"]) == expected.msrep_settled
         assert row["MSE 95 % half width [(N.m/rad)2]"] == ""
         assert row["seeds"] == "1"
-    assert float(rows[2]["MSE of the paper [(N.m/rad)2]"]) == 128.1614
-    assert float(rows[2]["MSREP of the paper [%]"]) == 0.58
-    assert rows[3]["MSREP of the paper [%]"] == ""  # the paper has no such row
+    assert float(rows["RESIDUAL"]["MSE of the paper [(N.m/rad)2]"]) == 128.1614
+    assert float(rows["RESIDUAL"]["MSREP of the paper [%]"]) == 0.58
+    assert rows["MODEL-measured"]["MSREP of the paper [%]"] == ""  # the paper has no such row
 
 
 def test_mean_and_interval_over_seeds(tmp_path: Path) -> None:
     each = [{name: Indices(*[x] * 6) for name in ROWS} for x in (1.0, 2.0, 3.0)]
     result = replace(one_seed("table1"), seeds=[1, 2, 3], indices=each)
-    write_table(result, tmp_path / "table.csv")
-    with (tmp_path / "table.csv").open(newline="") as file:
-        row = next(csv.DictReader(file))
+    row = rows_of_table(result, tmp_path)["MODEL"]
     assert float(row["MSE [(N.m/rad)2]"]) == 2.0
     assert float(row["MSE 95 % half width [(N.m/rad)2]"]) == pytest.approx(2.48414, rel=1e-5)
     assert row["seeds"] == "3"
@@ -74,12 +89,75 @@ def test_index_that_is_not_defined_is_a_dash_and_an_empty_field(tmp_path: Path) 
     cells = {row[0]: row[1:] for row in (re.split("  +", x) for x in whole.splitlines())}
     assert cells["RESIDUAL against SENSOR"][1:] == ["-", "-"]
     assert "-" not in cells["RESIDUAL against SENSOR, relative to true"]
-    write_table(result, tmp_path / "table.csv")
-    with (tmp_path / "table.csv").open(newline="") as file:
-        rows = {row["estimation"]: row for row in csv.DictReader(file)}
-    row = rows["RESIDUAL against SENSOR"]
+    row = rows_of_table(result, tmp_path)["RESIDUAL against SENSOR"]
     assert row["MSREP [%]"] == row["mean error [%]"] == ""
-    assert (
-        float(row["MSREP after 1 s [%]"])
-        == result.indices[0]["RESIDUAL against SENSOR"].msrep_settled
-    )
+    expected = result.indices[0]["RESIDUAL against SENSOR"]
+    assert float(row["MSREP after 1 s [%]"]) == expected.msrep_settled
+
+
+# Figures
+
+
+def draw(scenario: str, name: str) -> Figure:
+    return FIGURES[name](one_seed(scenario).recording)
+
+
+def line(
+    name: str, label: str, panel: int = 0, scenario: str = "table1"
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    axes = draw(scenario, name).axes[panel]
+    (found, *_) = (each for each in axes.get_lines() if label in str(each.get_label()))
+    return np.asarray(found.get_xdata()), np.asarray(found.get_ydata())
+
+
+def test_every_figure_belongs_to_a_scenario_and_every_scenario_has_one() -> None:
+    assert {name for scenario in SCENARIOS.values() for name in scenario.figures} == set(FIGURES)
+    assert all(scenario.figures for scenario in SCENARIOS.values())
+    assert {name for _, name in DRAWN} == set(FIGURES)
+
+
+def test_drawn_values_are_those_of_the_recording() -> None:
+    recording = one_seed("table1").recording
+    for name, label, values in (
+        ("fig3-deformation", "phi", recording.plant["phi"]),
+        ("fig4-velocity", "Kalman", recording.estimators["RESIDUAL"]["theta_dot"]),
+        ("fig4-velocity", "true", recording.plant["theta_dot"]),
+        ("fig5-flexibility-torque", "sensor", recording.plant["tau_e_measured"]),
+        ("fig5-flexibility-torque", "true", recording.plant["tau_e"]),
+        ("fig5-flexibility-torque", "fitted", recording.estimators["RESIDUAL"]["tau_e"]),
+        ("fig5-flexibility-torque", "residual", recording.estimators["RESIDUAL"]["tau_e_residual"]),
+        ("fig6-stiffness", "SENSOR", recording.estimators["SENSOR"]["sigma"]),
+        ("fig6-stiffness", "MODEL", recording.estimators["MODEL"]["sigma"]),
+        ("fig7-stability-factor", "RESIDUAL", recording.estimators["RESIDUAL"]["a"]),
+        ("fig8-constant-factors", "enhanced", recording.estimators["RESIDUAL"]["sigma"]),
+    ):
+        t, drawn = line(name, label)
+        np.testing.assert_array_equal(drawn, values[np.searchsorted(recording.t, t)])
+        assert (drawn.min(), drawn.max()) == (values.min(), values.max())
+
+
+def test_the_curves_of_a_transmission_are_the_spring_and_its_estimate() -> None:
+    """tau_e = 150 phi + 3000 phi^3 N.m is the spring of the scenario."""
+    recording = one_seed("single-hardening").recording
+    estimate = recording.estimators["RESIDUAL"]
+    for panel, signal in ((1, "tau_e"), (2, "sigma")):
+        phi, true = line("transmission", "true", panel, "single-hardening")
+        spring = 150 * phi + 3000 * phi**3 if panel == 1 else 150 + 9000 * phi**2
+        np.testing.assert_allclose(true, spring, rtol=1e-6, atol=1e-9)
+        phi, drawn = line("transmission", "RESIDUAL", panel, "single-hardening")
+        assert len(phi) > 50
+        last = recording.t >= 10.0
+        pairs = set(zip(estimate["phi"][last], estimate[signal][last], strict=True))
+        assert set(zip(phi, drawn, strict=True)) <= pairs
+
+
+@pytest.mark.parametrize(("scenario", "name"), DRAWN)
+@pytest.mark.slow("a scenario is simulated and drawn")
+def test_files_open_and_are_small(scenario: str, name: str, tmp_path: Path) -> None:
+    save(FIGURES[name], one_seed(scenario).recording, tmp_path / name)
+    with Image.open(tmp_path / f"{name}.png") as image:
+        image.load()
+        assert image.width >= 1000
+    svg = (tmp_path / f"{name}.svg").read_bytes()
+    assert svg.startswith(b"<?xml")
+    assert len(svg) < 1_000_000
