@@ -84,8 +84,7 @@ def damage(part: Any, member: str, place: int, value: int) -> None:
     place=st.integers(0, 5), value=st.one_of(st.integers(-(2**31), -2), st.integers(65, 2**31 - 1))
 )
 def test_a_damaged_member_is_found(c: Library, member: str, place: int, value: int) -> None:
-    """GIVEN a state of FilteredRegression, WHEN an integer of it is out of all that it can be, THEN
-    it does not pass."""
+    """An integer of a state of FilteredRegression is out of all that it can be."""
     e = Estimator(c, {"method": FILTERED_REGRESSION, "rls.n": 3, "prior.B": 0.1})
     damage(e.state.method.regression, member, place, value)
     assert not passes(e)

@@ -39,8 +39,7 @@ def test_before_the_first_tick_the_estimate_is_the_prior(c: Library) -> None:
 @pytest.mark.parametrize("frequency", [0.3, 1.0, 8.0])
 @pytest.mark.parametrize("wrong", [0.9, 1.1])
 def test_errors_of_the_friction_are_estimated(c: Library, frequency: float, wrong: float) -> None:
-    """GIVEN a parameter of viscous friction that is wrong by 10 %, and unknown Coulomb friction,
-    THEN both are estimated, and the stiffness is right."""
+    """The viscous friction is wrong by 10 %, the Coulomb friction unknown."""
     joint = Joint(frequency=frequency, amplitude=0.8 / frequency, tau_coulomb=0.015)
     found = Estimator(c, {**REGRESSION, "motor.D_theta": wrong * 1e-3}).run(joint.measurements())
     assert found["D_theta_hat"][-1] == pytest.approx(1e-3, abs=0.1 * abs(wrong - 1) * 1e-3)
@@ -57,8 +56,7 @@ NONE, FRICTION = 1, 6  # reasons of doubt
 def test_a_link_that_is_read_late_looks_like_friction_below_0(
     c: Library, late: int, D_theta: float, doubt: int
 ) -> None:
-    """GIVEN unknown friction, WHEN q is late, THEN that looks like less friction, and is doubted
-    where it is less than none."""
+    """The friction is unknown. It is doubted where it is less than none."""
     z = Joint(D_theta=D_theta).measurements()
     z[late:, 1] = z[: len(z) - late, 1]
     found = Estimator(c, {**REGRESSION, "prior.D_theta": 1000.0}).run(z)
@@ -84,8 +82,7 @@ def test_stiffness_is_estimated_from_other_sources_of_the_torque(c: Library, mod
 
 
 def test_the_error_agrees_with_the_standard_deviation(c: Library) -> None:
-    """GIVEN errors of the friction drawn from their priors, WHEN the stiffness is estimated in
-    many runs, THEN the true one is within 1.96 standard deviations about as often as expected."""
+    """In many runs, with errors of the friction drawn from their priors."""
     rng = np.random.default_rng(3)
     inside = []
     for seed in range(30):
@@ -114,8 +111,7 @@ def test_confident_compares_the_standard_deviation_with_the_threshold(c: Library
 
 @pytest.mark.parametrize("method", [PAPER2011, FILTERED_REGRESSION])
 def test_a_stiffness_of_zero_is_not_confident(c: Library, method: int) -> None:
-    """GIVEN a basis without slope, so that the stiffness and its standard deviation are 0, THEN
-    the estimate is not confident."""
+    """Of a basis without slope: its standard deviation is 0, too."""
     values = {"method": method, "rls.n": 1, "rls.symmetric": 0}
     estimator = Estimator(c, values)
     assert (estimator.estimate.sigma, estimator.estimate.sigma_std) == (0.0, 0.0)
@@ -154,8 +150,7 @@ def test_the_estimate_follows_a_spring_that_ages_and_does_not_change_at_rest(c: 
 
 
 def test_a_long_rest_does_not_make_the_estimate_more_certain_than_its_rounding(c: Library) -> None:
-    """GIVEN a joint that is held at a deformation of 0.6 counts, which the encoders show as one
-    count, WHEN it rests there for a long time, THEN the standard deviation covers the error."""
+    """The joint is held at a deformation of 0.6 counts, which the encoders show as one count."""
     # A constant torque may also be a bias, or the eccentricity of an encoder that does not turn.
     constant = {"prior.bias": 0.0, "prior.eccentric": 0.0}
     count, sigma = 2 * np.pi / 40000, 140.0
@@ -171,8 +166,7 @@ def test_a_long_rest_does_not_make_the_estimate_more_certain_than_its_rounding(c
 
 @pytest.mark.parametrize("modality", [RESIDUAL, SENSOR])
 def test_the_last_digit_of_a_position_does_not_matter(c: Library, modality: int) -> None:
-    """GIVEN q - theta that changes only by the rounding of floating-point numbers, as if both
-    encoders had moved by the same count, THEN the deformation counts as unchanged."""
+    """q - theta changes only by rounding, as if both encoders had moved by the same count."""
     z = table1_recording().measurements()[:2000]
     other = z.copy()
     other[:, 1] += 1e-13 * np.random.default_rng(4).normal(size=len(z))
@@ -182,18 +176,8 @@ def test_the_last_digit_of_a_position_does_not_matter(c: Library, modality: int)
 
 
 def test_friction_of_unknown_sign_increases_the_standard_deviation(c: Library) -> None:
-    """GIVEN a motor that creeps, so that the friction has an unknown share of the torque, THEN
-    the stiffness is less exact, and its standard deviation covers the error."""
+    """The motor creeps, so that the friction has an unknown share of the torque."""
     joint = Joint(frequency=0.1, amplitude=0.03, tau_coulomb=0.02)
     found = Estimator(c, REGRESSION).run(joint.measurements())[2000:]
     error = np.abs(found["sigma"] - joint.sigma[2000:])
     assert np.mean(error < 1.96 * found["sigma_std"]) > 0.9
-
-
-@pytest.mark.parametrize("samples", [1, 2, 5])
-def test_a_row_has_as_many_samples_as_asked(c: Library, samples: int) -> None:
-    """The error of the prediction is that of the last row, so it stays until the next one."""
-    z = Joint(duration=3.0).measurements()
-    found = Estimator(c, {"method": 2, "rls.n": 1, "regression.decimation": samples}).run(z)
-    rows = np.count_nonzero(np.diff(found["epsilon"][-1001:]))
-    assert rows == 1000 // samples

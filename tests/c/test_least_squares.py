@@ -91,8 +91,7 @@ def test_every_sample_against_the_recursion_as_printed(c: Library, kind: int, si
 @pytest.mark.slow("the oracle computes in many digits")
 @pytest.mark.parametrize("kind", [STANDARD, CONSTANT_FACTOR])
 def test_P_stays_positive_definite_with_a_large_P_0(c: Library, kind: int) -> None:
-    # GIVEN P_0 = 1e20, with which the recursion as printed fails in doubles WHEN the recursion runs
-    # over Table I THEN P is finite, positive definite, and equal to that of the closed form
+    """With P_0 = 1e20 the recursion as printed fails in doubles."""
     F, y = (samples[:5000] for samples in table1_data())
     recursion = Recursion(c, kind, 0.1, 1e20, np.zeros(18))
     weight = np.empty(len(y))

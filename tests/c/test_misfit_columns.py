@@ -135,8 +135,7 @@ def test_a_prior_of_zero_is_the_limit_of_small_priors(c: Library, prior: str) ->
 def test_the_effect_of_the_gain_is_that_of_a_wrong_gain(
     c: Library, values: dict[str, float]
 ) -> None:
-    """GIVEN a torque that is recorded 1 % too large, THEN the stiffness changes by what
-    sigma_per_gain says."""
+    """The torque is recorded 1 % too large."""
     z = MisfitJoint(duration=3.0, tau_coulomb=0.0).measurements()
     larger = z.copy()
     larger[:, 3] *= 1.01

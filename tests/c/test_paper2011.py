@@ -57,8 +57,7 @@ def test_at_rest_the_velocity_becomes_zero_and_never_denormal(c: Library) -> Non
 
 
 def test_missing_samples_do_not_disturb_the_filter(c: Library) -> None:
-    # GIVEN a settled filter on a ramp WHEN ten samples are missing and the next step gets the time
-    # since the last sample THEN position and velocity have no error
+    """On a ramp: the next step gets the time since the last sample."""
     p = c.new("sh_filter_parameters", **SETTINGS)
     kalman = c.new("sh_kinematic_kalman")
     c.lib.sh_kinematic_kalman_start(kalman, p, 0.0)
@@ -71,8 +70,7 @@ def test_missing_samples_do_not_disturb_the_filter(c: Library) -> None:
 
 @pytest.mark.parametrize("kind", [1, 2])
 def test_the_velocity_is_as_precise_at_a_large_position(c: Library, kind: int) -> None:
-    # GIVEN the same motion near zero and 2^22 rad away, both with the rounding of the far one
-    # WHEN both are filtered THEN the velocity is the same
+    """The same motion near zero and 2^22 rad away, both with the rounding of the far one."""
     near = COUNT * np.floor(np.linspace(0, 500, 1500) ** 1.1)
     far = near + 2.0**22
     velocity = [run(c, z, kind=kind)[:, 1] for z in (far - 2.0**22, far)]

@@ -78,6 +78,7 @@ CASES: Mapping[str, tuple[Joint, Mapping[str, float]]] = {
     "one power less than the most": (SHORT, {"rls.n": 7, "rls.m": 1}),
     "turned round": (replace(FAST, duration=1.5), {**ONE, "motor.gamma": -50.0}),
     "held torque": (SHORT, {**ONE, "torque.held": 1}),
+    **{f"{n} samples in a row": (SHORT, {**ONE, "regression.decimation": n}) for n in (1, 2, 5)},
 }
 LONG_CASES: Mapping[str, tuple[Joint, Mapping[str, float]]] = {
     "all columns": (JOINT, {"motor.D_theta": 1.1e-3, "motor.B": 2.5e-5}),

@@ -40,8 +40,7 @@ def test_the_sign_of_steady_motion_is_known_between_counts(c: Library, velocity:
 
 
 def test_the_sign_is_unknown_at_rest(c: Library) -> None:
-    """GIVEN a motor that stops, WHEN there has been no count for as long as one takes at the
-    velocity `slow`, THEN the sign is unknown and 0."""
+    """When there has been no count for as long as one takes at the velocity `slow`."""
     x = 0.5 * T * np.minimum(steps(200), 100)
     signs, unknown = run(c, round_to_counts(x, COUNTS))
     waiting = int(np.ceil(COUNT / (SLOW * T))) + 2
@@ -59,8 +58,7 @@ def test_the_sign_is_unknown_while_the_motor_creeps(c: Library) -> None:
 def test_the_sum_of_the_signs_over_a_reversal_is_right(
     c: Library, acceleration: float, seed: int
 ) -> None:
-    """GIVEN a reversal at any instant, WHEN the signs are summed over it until the motor is fast
-    again, THEN the sum differs from that of the true sign by less than one sample."""
+    """It differs from the sum of the true signs by less than one sample."""
     turn = 0.1 + np.random.default_rng(seed).uniform(0, T)
     t = T * steps(201)
     offset = np.random.default_rng(seed + 100).uniform(0, COUNT)
@@ -92,9 +90,7 @@ def test_the_sign_is_known_at_the_velocity_slow_itself(c: Library) -> None:
 
 
 def test_a_reversal_subtracts_the_wrong_signs_and_counts_them_as_unknown(c: Library) -> None:
-    """GIVEN a motor that reverses between two edges of the encoder, THEN the signs since the last
-    count are subtracted at the count that shows the reversal; those samples and this one count as
-    unknown."""
+    """Those are the signs since the last count; the motor reverses between two edges."""
     signs, unknown = run(c, COUNT * np.array([0, 1, 1, 2, 2, 3, 3, 3, 2, 2.0]))
     assert signs[4:].tolist() == [1, 1, 1, -1 - 2, -1]
     assert unknown[4:].tolist() == [0, 0, 0, 1 + 2, 0]
@@ -149,8 +145,7 @@ def test_a_start_at_a_constant_signal_has_no_transient(c: Library) -> None:
 
 
 def test_derivatives_are_the_same_far_from_zero(c: Library) -> None:
-    """GIVEN a signal of integers, WHEN 2^40 is added, which is exact in doubles, THEN every
-    derivative is the same to the last bit."""
+    """To the last bit: the signal has integers, to which 2^40 is added exactly."""
     lib, d = c.lib, design(c, 200.0)
     near, far = (c.new("sh_state_variable_filter") for _ in range(2))
     lib.sh_state_variable_filter_start(near, 0.0, 0.0)

@@ -1,8 +1,6 @@
 """The antagonistic estimator has the results of two single estimators."""
 
 import math
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 import fmpy
@@ -21,16 +19,7 @@ OUTPUTS = [
 CONFIDENT, NOT_EXCITED, MISFIT = 1, 3, 4  # items of the enumeration Doubt
 
 
-@contextmanager
-def trio(pair_fmu: Path, fmu: Path, values: dict[str, float]) -> Iterator[list[Instance]]:
-    """The pair and two single estimators, ready for the first step. Motor 2 has other data."""
-    motors = [{"B": 2.3e-5, "D_theta": 1e-3}, {"B": 3e-5, "D_theta": 2e-3}]
-    with Instance(pair_fmu) as pair, Instance(fmu) as one, Instance(fmu) as two:
-        of_pair = {f"motor_{i + 1}.{k}": v for i, m in enumerate(motors) for k, v in m.items()}
-        pair.initialise(values | of_pair)
-        for single, motor in zip((one, two), motors, strict=True):
-            single.initialise(values | {f"motor.{k}": v for k, v in motor.items()})
-        yield [pair, one, two]
+MOTORS = [{"B": 2.3e-5, "D_theta": 1e-3}, {"B": 3e-5, "D_theta": 2e-3}]
 
 
 def step(instances: list[Instance], k: int, bad: dict[str, float] | None = None) -> list[int]:
@@ -67,11 +56,14 @@ def doubt_of_sum(pair: Instance, one: Instance, two: Instance) -> float:
     ],
 )
 def test_bit_identical_to_two_estimators(values: dict[str, float], estimator_fmu: Path) -> None:
-    with trio(PAIR, estimator_fmu, values) as instances:
-        pair, one, two = instances
+    with Instance(PAIR) as pair, Instance(estimator_fmu) as one, Instance(estimator_fmu) as two:
+        of_pair = {f"motor_{i}.{k}": v for i, m in enumerate(MOTORS, 1) for k, v in m.items()}
+        pair.initialise(values | of_pair)
+        for single, motor in zip((one, two), MOTORS, strict=True):
+            single.initialise(values | {f"motor.{k}": v for k, v in motor.items()})
         for k in range(200):
             bad = {"tau": math.nan} if 50 <= k < 53 else None
-            statuses = step(instances, k, bad)
+            statuses = step([pair, one, two], k, bad)
             expected = [WARNING, OK, WARNING] if bad else [OK, OK, OK]
             assert statuses == expected
             for i, single in ((1, one), (2, two)):

@@ -130,26 +130,24 @@ def known_values(fmu: Instance) -> dict[str, list[float]]:
     return values
 
 
+EFFECTIVE = {
+    "spring.gap": 1e-3,  # so that the spring is engaged
+    # below the deformation, and above it when it is 1.2345 times as large
+    **{"spring.knee_1": 0.3, "spring.knee_2": 0.3, "range.knee": 0.0, "range.knee_2": 0.0},
+    **{"spring.step_at": 0.0, "spring.step_for": 0.0},  # so that it has changed at the start
+}
+
+
 def distinct(fmu: Instance, choices: dict[str, int]) -> dict[str, float]:
     """Start values with which no parameter is without effect because another one is zero."""
     start: dict[str, float] = {}
     for k, (name, v) in enumerate(fmu.variables.items()):
-        if name in choices:
-            start[name] = choices[name]
-        elif name in ("rls.n", "rls.m"):
+        if name in ("rls.n", "rls.m"):
             start[name] = float(v.max)
-        elif name == "spring.gap":
-            start[name] = 1e-3  # so that the spring is engaged
-        elif name in ("spring.knee_1", "spring.knee_2"):
-            # below the deformation, and above it when it is 1.2345 times as large
-            start[name] = 0.3
-        elif name in ("range.knee", "range.knee_2"):
-            start[name] = 0.0
-        elif name in ("spring.step_at", "spring.step_for"):
-            start[name] = 0.0  # so that the stiffness has changed at the start
         elif v.causality == "parameter" and v.type == "Real" and float(v.start) == 0:
             start[name] = 0.3 + 0.01 * k
-    return start
+    given = {**EFFECTIVE, **choices}
+    return start | {name: given[name] for name in given.keys() & fmu.variables.keys()}
 
 
 def observed(path: Path, choices: dict[str, int]) -> dict[str, set[str]]:

@@ -458,6 +458,11 @@ def test_lack_of_memory_for_a_state_is_an_error(estimator_fmu: Path) -> None:
 # Messages
 
 
+def choose(fmu: Any, on: bool, *names: bytes) -> int:
+    categories = (ctypes.c_char_p * len(names))(*names)
+    return int(fmu.call("SetDebugLogging", on, SIZE(len(names)), categories))
+
+
 @pytest.mark.parametrize(
     ("on", "chosen", "passed"),
     [
@@ -471,19 +476,13 @@ def test_a_message_is_logged_if_its_category_was_chosen(
     on: bool, chosen: list[str], passed: set[str], estimator_fmu: Path
 ) -> None:
     with Instance(estimator_fmu, logging_on=not on) as fmu:
-        categories = (ctypes.c_char_p * len(chosen))(*map(str.encode, chosen))
-        assert fmu.call("SetDebugLogging", int(on), SIZE(len(chosen)), categories) == OK
+        assert choose(fmu, on, *map(str.encode, chosen)) == OK
         fmu.initialise()  # logs an event
         fmu.set_all({"theta": math.nan})
         assert fmu.step(0.0, 1e-3) == WARNING
         fmu.call("GetStatus", 0, ctypes.byref(ctypes.c_int()))  # returns fmi2Discard
         assert fmu.step(5.0, 1e-3) == ERROR
         assert {category for _, category, _ in fmu.messages} == passed
-
-
-def choose(fmu: Instance3, on: bool, *names: bytes) -> int:
-    categories = (ctypes.c_char_p * len(names))(*names)
-    return fmu.call("SetDebugLogging", on, SIZE(len(names)), categories)
 
 
 def test_in_fmi_3_named_log_categories_are_turned_on_and_off(estimator_twin: Path) -> None:
@@ -537,8 +536,7 @@ def test_messages_about_texts_that_are_not_utf8_are_utf8(estimator_fmu: Path) ->
     with Instance(estimator_fmu, token="{\udcff}") as fmu:
         assert "{?}" in fmu.last_message
     with Instance(estimator_fmu) as fmu:
-        category = (ctypes.c_char_p * 1)(b"log\xc3(")
-        assert fmu.call("SetDebugLogging", 1, ONE, category) == WARNING
+        assert choose(fmu, True, b"log\xc3(") == WARNING
         assert "unknown category log?(" in fmu.last_message
     for length in range(300, 304):  # a long message is not cut inside a character
         with Instance(estimator_fmu, token="x" * (length - 300) + "\u20ac" * length) as fmu:

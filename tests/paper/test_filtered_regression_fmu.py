@@ -70,8 +70,7 @@ def test_motions_that_nothing_was_tuned_on(c: Library) -> None:
 def test_motor_that_turns_at_the_start(
     c: Library, period: float, velocity: float, friction: float
 ) -> None:
-    """GIVEN a joint that moves at the first sample, in [rad/s], THEN that costs hardly more than to
-    learn nothing for 12/w, at any sample period."""
+    """In [rad/s]. That costs hardly more than to learn nothing for 12/w, at any sample period."""
     t = times(period, 1.0)
     torques = np.column_stack([0.3 * np.sin(2 * np.pi * t), 8 * np.sin(0.2 * np.pi * t), 0 * t])
     start = {"initial.theta_dot": velocity, "initial.q_dot": velocity}

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from PIL import Image
 
@@ -98,14 +97,10 @@ def test_index_that_is_not_defined_is_a_dash_and_an_empty_field(tmp_path: Path) 
 # Figures
 
 
-def draw(scenario: str, name: str) -> Figure:
-    return FIGURES[name](one_seed(scenario).recording)
-
-
 def line(
     name: str, label: str, panel: int = 0, scenario: str = "table1"
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    axes = draw(scenario, name).axes[panel]
+    axes = FIGURES[name](one_seed(scenario).recording).axes[panel]
     (found, *_) = (each for each in axes.get_lines() if label in str(each.get_label()))
     return np.asarray(found.get_xdata()), np.asarray(found.get_ydata())
 
