@@ -108,9 +108,8 @@ class Tool:
         first with these inputs.
         """
         objects = [ctypes.c_void_p(self.new(parameters)) for _ in range(2)]
-        places = [
-            (ctypes.c_double * 40 if name == "eta" else self._type(name))() for name in self.outputs
-        ]
+        types: dict[str, Any] = {"double": ctypes.c_double, "int": ctypes.c_int}
+        places = [(types[kind] * size)() for kind, size in map(self.declared, self.outputs)]
         pointers = [ctypes.byref(each) for each in places]
         rows: dict[str, list[Any]] = {name: [] for name in self.outputs}
         for t, *z in samples.tolist():
@@ -119,14 +118,16 @@ class Tool:
                     numbers = [ctypes.c_double(each) for each in (t, *inputs)]
                     self.library.sigmahat_estimator_tick(objects[which], *numbers, *pointers)
             for name, place in zip(self.outputs, places, strict=True):
-                rows[name].append(list(place) if name == "eta" else place.value)
+                rows[name].append(list(place) if name == "eta" else place[0])
         for each in objects:
             self.library.sigmahat_estimator_free(each)
         return {name: np.array(each) for name, each in rows.items()}
 
-    def _type(self, name: str) -> Any:
-        real = self.fmu.variable(name).type == "Real"
-        return ctypes.c_double if real else ctypes.c_int
+    def declared(self, name: str) -> tuple[str, int]:
+        """Type in C, and number of entries, of an output."""
+        if name == "eta":
+            return "double", 40
+        return "double" if self.fmu.variable(name).type == "Real" else "int", 1
 
 
 def _parameter(expression: str) -> str:
@@ -223,11 +224,8 @@ def test_all_in_one_file_they_run_without_an_error_of_memory(tool: Tool, tmp_pat
     includes = "".join(tool.includes) * 2 + '#include "sigmahat_noise.c"\n#include "tool.c"\n'
     given = "const double reals[] = {%s}; const int integers[] = {%s}; const double eta_0[] = {%s};"
     lists = (", ".join(map(repr, each)) for each in tool.values(otherwise(SETTINGS["regression"])))
-    places = " ".join(
-        f"{'double' if tool.fmu.variable('sigma' if n == 'eta' else n).type == 'Real' else 'int'}"
-        f" {n}[{40 if n == 'eta' else 1}];"
-        for n in tool.outputs
-    )
+    declared = {name: tool.declared(name) for name in tool.outputs}
+    places = " ".join(f"{kind} {name}[{size}];" for name, (kind, size) in declared.items())
     tick = "sigmahat_estimator_tick(o, 1e-3 * k, sin(k), 1.1 * sin(k), 1, cos(k), 0, %s);"
     body = (
         f"{given % tuple(lists)} {places} int k; void *o = tool_new(reals, integers, eta_0);"
