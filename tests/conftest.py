@@ -10,10 +10,9 @@ from typing import TYPE_CHECKING
 import pytest
 
 import gate
-import sigmahat
 from command_line import shell as shell
-from fmi_instance import Instance, Instance3
-from fmi_runs import Fmi
+from fmi_instance import Instance3
+from fmi_runs import FMI2, Fmi
 
 if TYPE_CHECKING:
     from c_library import Library
@@ -37,33 +36,21 @@ def c(build: Path) -> "Library":
 
 
 @pytest.fixture(scope="session")
-def estimator_fmu() -> Path:
-    """Path of StiffnessEstimator.fmu."""
-    return sigmahat.fmu("StiffnessEstimator")
-
-
-@pytest.fixture(scope="session")
-def plant_fmu() -> Path:
-    """Path of AwasPlant.fmu."""
-    return sigmahat.fmu("AwasPlant")
-
-
-@pytest.fixture(scope="session")
 def twin(build: Path) -> Callable[[str], Path]:
     """Path of the twin for FMI 3.0 of an FMU, with the binary of this machine."""
     return lambda name: build / "fmi3" / f"{name}_FMI3.fmu"
 
 
-@pytest.fixture(params=["fmi2", "fmi3"])
-def fmi(request: pytest.FixtureRequest, twin: Callable[[str], Path]) -> Fmi:
-    """Each version of FMI in turn."""
-    return Fmi(Instance, sigmahat.fmu) if request.param == "fmi2" else Fmi(Instance3, twin)
-
-
 @pytest.fixture(scope="session")
-def estimator_twin(twin: Callable[[str], Path]) -> Path:
-    """Path of StiffnessEstimator_FMI3.fmu."""
-    return twin("StiffnessEstimator")
+def fmi3(twin: Callable[[str], Path]) -> Fmi:
+    """FMI 3.0. Called with the name of an FMU, it makes an instance."""
+    return Fmi(Instance3, twin)
+
+
+@pytest.fixture(params=["fmi2", "fmi3"])
+def fmi(request: pytest.FixtureRequest, fmi3: Fmi) -> Fmi:
+    """Each version of FMI in turn."""
+    return FMI2 if request.param == "fmi2" else fmi3
 
 
 @pytest.fixture(scope="session")

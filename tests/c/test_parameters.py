@@ -2,12 +2,12 @@
 
 import math
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import fmpy
 import pytest
 
+import sigmahat
 from c_library import Library
 from c_sources import REPOSITORY
 from fmi_runs import limits
@@ -15,9 +15,10 @@ from sigmahat.export import c_variables
 
 
 @pytest.fixture(scope="module")
-def listed(estimator_fmu: Path) -> list[Any]:
+def listed() -> list[Any]:
     """Parameters and outputs, without those in arrays."""
-    found: list[Any] = fmpy.read_model_description(str(estimator_fmu)).modelVariables
+    fmu = sigmahat.fmu("StiffnessEstimator")
+    found: list[Any] = fmpy.read_model_description(str(fmu)).modelVariables
     return [v for v in found if v.causality != "input" and "[" not in v.name]
 
 

@@ -13,7 +13,7 @@ from fmpy import fmi2
 
 import sigmahat
 from fmi_instance import DISCARD, ERROR, OK, REAL, SIZE, WARNING, Instance, Instance3
-from fmi_runs import ESTIMATORS, PLANTS, Driver, Fmi, limits, names
+from fmi_runs import ESTIMATORS, FMI2, PLANTS, Driver, Fmi, limits, names
 
 every_fmu = pytest.mark.parametrize("name", ESTIMATORS + PLANTS)
 each_kind = pytest.mark.parametrize("name", [*ESTIMATORS, "AwasPlant"])
@@ -140,8 +140,8 @@ def test_the_warning_says_if_the_regression_overflows(fmi: Fmi) -> None:
         assert "regression overflows at theta = -1e+12" in fmu.last_message
 
 
-def test_a_bad_input_derivative_skips_the_ticks_that_use_it(estimator_fmu: Path) -> None:
-    with Instance(estimator_fmu) as fmu:
+def test_a_bad_input_derivative_skips_the_ticks_that_use_it() -> None:
+    with FMI2() as fmu:
         fmu.initialise()
         assert fmu.set_derivative("theta", math.nan) == OK
         assert fmu.step(0.0, 2e-3) == WARNING
@@ -313,15 +313,15 @@ BYTES, STATE = ctypes.create_string_buffer(1), ctypes.byref(ctypes.c_void_p())
     ],
 )
 def test_an_argument_that_is_missing_is_named(
-    function: str, argument: str, arguments: tuple[Any, ...], estimator_fmu: Path
+    function: str, argument: str, arguments: tuple[Any, ...]
 ) -> None:
-    with Instance(estimator_fmu) as fmu:
+    with FMI2() as fmu:
         assert fmu.call(function, *arguments) == ERROR
         assert function in fmu.last_message and argument in fmu.last_message
 
 
-def test_derivatives_of_inputs_need_an_input_and_the_order_1(estimator_fmu: Path) -> None:
-    with Instance(estimator_fmu) as fmu:
+def test_derivatives_of_inputs_need_an_input_and_the_order_1() -> None:
+    with FMI2() as fmu:
         fmu.initialise()
         tau, value = fmu.references(["tau"]), (REAL * 1)(1.0)
         assert fmu.set_derivative("tau", 1.0, order=2) == ERROR
@@ -335,8 +335,8 @@ def test_derivatives_of_inputs_need_an_input_and_the_order_1(estimator_fmu: Path
 RESULTS = ["eventHandlingNeeded", "terminateSimulation", "earlyReturn", "lastSuccessfulTime"]
 
 
-def test_a_step_needs_a_place_for_each_of_its_results(estimator_twin: Path) -> None:
-    with Instance3(estimator_twin) as fmu:
+def test_a_step_needs_a_place_for_each_of_its_results(fmi3: Fmi) -> None:
+    with fmi3() as fmu:
         fmu.initialise()
         for missing, name in enumerate(RESULTS):
             given = [None if i == missing else ctypes.byref(REAL()) for i in range(4)]
@@ -345,8 +345,8 @@ def test_a_step_needs_a_place_for_each_of_its_results(estimator_twin: Path) -> N
         assert fmu.step(0.0, 1e-3) == OK
 
 
-def test_each_reference_needs_one_value(estimator_twin: Path) -> None:
-    with Instance3(estimator_twin) as fmu:
+def test_each_reference_needs_one_value(fmi3: Fmi) -> None:
+    with fmi3() as fmu:
         references, values = fmu.references(["rls.c", "rls.a"]), (REAL * 3)(0.5, 0.5)
         for function in ("SetFloat64", "GetFloat64"):
             for wrong in (0, 1, 3):
@@ -367,15 +367,15 @@ def test_a_wrong_token_is_refused_with_both_values(token: str, fmi: Fmi) -> None
         assert token in message and fmu.description.guid in message
 
 
-def test_other_kinds_and_promises_of_fmi_3_are_refused(estimator_twin: Path) -> None:
+def test_other_kinds_and_promises_of_fmi_3_are_refused(fmi3: Fmi) -> None:
     for options, expected in (
         ({"event_mode": True}, "hasEventMode is false"),
         ({"intermediate": [0]}, "providesIntermediateUpdate is false"),
     ):
-        with Instance3(estimator_twin, **options) as fmu:
+        with fmi3(**options) as fmu:
             assert fmu.component is None
             assert expected in fmu.last_message
-    with Instance3(estimator_twin) as fmu:
+    with fmi3() as fmu:
         environment = [ctypes.c_void_p(4711), fmu.logger]
         assert fmu.instantiate("ModelExchange", *environment) is None
         assert "not for model exchange" in fmu.last_message
@@ -383,8 +383,8 @@ def test_other_kinds_and_promises_of_fmi_3_are_refused(estimator_twin: Path) -> 
         assert "not for scheduled execution" in fmu.last_message
 
 
-def test_an_instantiation_that_fails_returns_null(estimator_fmu: Path) -> None:
-    with Instance(estimator_fmu) as fmu:
+def test_an_instantiation_that_fails_returns_null() -> None:
+    with FMI2() as fmu:
         instantiate, guid = fmu.dll.fmi2Instantiate, fmu.description.guid.encode()
         callbacks = ctypes.byref(fmu.callbacks)
         for arguments, said in [
@@ -407,10 +407,9 @@ def test_an_instantiation_that_fails_returns_null(estimator_fmu: Path) -> None:
     ],
 )
 def test_importers_with_unusual_arguments_can_run_it(
-    version: int, options: dict[str, Any], estimator_fmu: Path, estimator_twin: Path
+    version: int, options: dict[str, Any], fmi3: Fmi
 ) -> None:
-    kind, path = (Instance, estimator_fmu) if version == 2 else (Instance3, estimator_twin)
-    with kind(path, **options) as fmu:
+    with (FMI2 if version == 2 else fmi3)(**options) as fmu:
         assert fmu.set("rls.n", 3) == OK  # before ...
         assert fmu.enter() == OK
         assert fmu.set("rls.m", 2) == OK  # ... and in initialisation mode
@@ -431,9 +430,9 @@ def limit_memory(fmu: Instance, full: Callable[[], bool]) -> Callable[[], int | 
 
 
 @pytest.mark.parametrize("after", range(3))
-def test_lack_of_memory_gives_no_instance_and_no_leak(after: int, estimator_fmu: Path) -> None:
+def test_lack_of_memory_gives_no_instance_and_no_leak(after: int) -> None:
     """The importer has no more memory after `after` blocks."""
-    with Instance(estimator_fmu, memory=True) as fmu:
+    with FMI2(memory=True) as fmu:
         before = set(fmu.blocks)
         assert len(before) == 3
         assert limit_memory(fmu, lambda: len(fmu.blocks) == 3 + after)() is None
@@ -441,8 +440,8 @@ def test_lack_of_memory_gives_no_instance_and_no_leak(after: int, estimator_fmu:
         assert fmu.blocks == before
 
 
-def test_lack_of_memory_for_a_state_is_an_error(estimator_fmu: Path) -> None:
-    with Instance(estimator_fmu, memory=True) as fmu:
+def test_lack_of_memory_for_a_state_is_an_error() -> None:
+    with FMI2(memory=True) as fmu:
         fmu.initialise()
         data, first, full = fmu.serialise(fmu.save()), fmu.component, False
         fmu.component = limit_memory(fmu, lambda: full)()
@@ -473,9 +472,9 @@ def choose(fmu: Any, on: bool, *names: bytes) -> int:
     ],
 )
 def test_a_message_is_logged_if_its_category_was_chosen(
-    on: bool, chosen: list[str], passed: set[str], estimator_fmu: Path
+    on: bool, chosen: list[str], passed: set[str]
 ) -> None:
-    with Instance(estimator_fmu, logging_on=not on) as fmu:
+    with FMI2(logging_on=not on) as fmu:
         assert choose(fmu, on, *map(str.encode, chosen)) == OK
         fmu.initialise()  # logs an event
         fmu.set_all({"theta": math.nan})
@@ -485,7 +484,7 @@ def test_a_message_is_logged_if_its_category_was_chosen(
         assert {category for _, category, _ in fmu.messages} == passed
 
 
-def test_in_fmi_3_named_log_categories_are_turned_on_and_off(estimator_twin: Path) -> None:
+def test_in_fmi_3_named_log_categories_are_turned_on_and_off(fmi3: Fmi) -> None:
     def logged(fmu: Instance3) -> list[str]:
         """Categories of the messages of an error, a warning and an event."""
         fmu.messages.clear()
@@ -496,7 +495,7 @@ def test_in_fmi_3_named_log_categories_are_turned_on_and_off(estimator_twin: Pat
         return [category for _, category, _ in fmu.messages]
 
     error, warning, event = "logStatusError", "logStatusWarning", "logEvents"
-    with Instance3(estimator_twin) as fmu:
+    with fmi3() as fmu:
         fmu.initialise()
         assert logged(fmu) == [error, warning, event]
         assert choose(fmu, True, b"logEvents") == OK  # the others stay
@@ -507,7 +506,7 @@ def test_in_fmi_3_named_log_categories_are_turned_on_and_off(estimator_twin: Pat
         assert logged(fmu) == []
         assert choose(fmu, True, b"logStatusError") == OK
         assert logged(fmu) == [error]
-    with Instance3(estimator_twin, logging_on=False) as fmu:
+    with fmi3(logging_on=False) as fmu:
         fmu.initialise()
         assert logged(fmu) == [error]
 
@@ -522,9 +521,9 @@ def test_in_fmi_3_named_log_categories_are_turned_on_and_off(estimator_twin: Pat
     ],
 )
 def test_the_name_of_an_instance_is_shown_without_bytes_that_are_not_utf8(
-    name: str, shown: str | None, estimator_fmu: Path
+    name: str, shown: str | None
 ) -> None:
-    with Instance(estimator_fmu, name=name, logging_on=False) as fmu:
+    with FMI2(name=name, logging_on=False) as fmu:
         assert [status for status, _, _ in fmu.messages] == [WARNING] * (shown is not None)
         assert all("not UTF-8" in text and str(shown) in text for _, _, text in fmu.messages)
         fmu.initialise()
@@ -532,14 +531,14 @@ def test_the_name_of_an_instance_is_shown_without_bytes_that_are_not_utf8(
         assert fmu.names == {shown or name}
 
 
-def test_messages_about_texts_that_are_not_utf8_are_utf8(estimator_fmu: Path) -> None:
-    with Instance(estimator_fmu, token="{\udcff}") as fmu:
+def test_messages_about_texts_that_are_not_utf8_are_utf8() -> None:
+    with FMI2(token="{\udcff}") as fmu:
         assert "{?}" in fmu.last_message
-    with Instance(estimator_fmu) as fmu:
+    with FMI2() as fmu:
         assert choose(fmu, True, b"log\xc3(") == WARNING
         assert "unknown category log?(" in fmu.last_message
     for length in range(300, 304):  # a long message is not cut inside a character
-        with Instance(estimator_fmu, token="x" * (length - 300) + "\u20ac" * length) as fmu:
+        with FMI2(token="x" * (length - 300) + "\u20ac" * length) as fmu:
             assert "\u20ac" * 50 in fmu.last_message
 
 
@@ -605,14 +604,14 @@ def test_steps_at_a_wrong_time_are_refused_and_change_nothing(name: str, fmi: Fm
         assert driver.step(1.002, 1e-3) == expected.step(1.002, 1e-3)
 
 
-def test_the_status_gives_the_time_that_was_reached(estimator_fmu: Path) -> None:
+def test_the_status_gives_the_time_that_was_reached() -> None:
     time, number, text = REAL(-1.0), ctypes.c_int(7), ctypes.c_char_p(b"unchanged")
 
     def reached(fmu: Instance) -> float:
         assert fmu.call("GetRealStatus", 2, ctypes.byref(time)) == OK
         return time.value
 
-    with Instance(estimator_fmu) as fmu:
+    with FMI2() as fmu:
         fmu.initialise(start=0.5)
         assert reached(fmu) == 0.5
         assert fmu.step(0.5, 1e-3) == OK

@@ -3,14 +3,13 @@
 import math
 from collections.abc import Callable
 from fractions import Fraction
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 import sigmahat
 from fmi_instance import ERROR, OK, Instance
-from fmi_runs import ESTIMATORS, PLANTS, SIGNALS, Fmi, names
+from fmi_runs import ESTIMATORS, FMI2, PLANTS, SIGNALS, Fmi, names
 from sigmahat.fmi.instance import Fmu, Slave
 from sigmahat.fmi.sample_loop import Recorder, SampleLoop, step_times
 
@@ -25,8 +24,8 @@ def ticks(fmu: Instance) -> int:
     return round(1.0 / fmu.get("rho"))
 
 
-def test_a_million_steps_of_a_sample_period_are_a_million_ticks(estimator_fmu: Path) -> None:
-    with Fmu(estimator_fmu) as fmu, Slave(fmu, "one") as slave:
+def test_a_million_steps_of_a_sample_period_are_a_million_ticks() -> None:
+    with Fmu(sigmahat.fmu("StiffnessEstimator")) as fmu, Slave(fmu, "one") as slave:
         slave.initialize({**COUNTING, "modality": "Sensor", "rls.kind": "Standard"})
         h, loop, count = 1e-3, SampleLoop(), 1_000_000
         # With the same rounding errors as in importers, which add up the time.
@@ -39,8 +38,8 @@ def test_a_million_steps_of_a_sample_period_are_a_million_ticks(estimator_fmu: P
 
 
 @pytest.mark.parametrize("h", [1e-4, 1e-3, 2.5e-3, 1 / 60, 1e-3 / 7, 0.016666666666666677])
-def test_a_step_of_any_length_computes_the_ticks_within_it(h: float, estimator_fmu: Path) -> None:
-    with Instance(estimator_fmu) as fmu:
+def test_a_step_of_any_length_computes_the_ticks_within_it(h: float) -> None:
+    with FMI2() as fmu:
         fmu.initialise(COUNTING)
         for k in range(300):
             assert fmu.step(k * h, h) == OK
@@ -48,8 +47,8 @@ def test_a_step_of_any_length_computes_the_ticks_within_it(h: float, estimator_f
             assert ticks(fmu) == math.ceil((k + 1) * h / 1e-3 - 1e-6)
 
 
-def test_steps_much_shorter_than_the_tolerance_add_up(estimator_fmu: Path) -> None:
-    with Instance(estimator_fmu) as fmu:
+def test_steps_much_shorter_than_the_tolerance_add_up() -> None:
+    with FMI2() as fmu:
         fmu.initialise(COUNTING)
         h = 1e-3 / 3e6
         for k in range(10):
@@ -100,8 +99,8 @@ def test_inputs_with_derivatives_give_the_same_ticks_for_any_step(name: str) -> 
 
 
 @pytest.mark.parametrize("h", [1.0009e-3, 0.9991e-3])
-def test_ticks_follow_the_times_if_steps_differ_slightly(h: float, estimator_fmu: Path) -> None:
-    with Instance(estimator_fmu) as fmu:
+def test_ticks_follow_the_times_if_steps_differ_slightly(h: float) -> None:
+    with FMI2() as fmu:
         fmu.initialise(COUNTING)
         for k in range(3000):
             assert fmu.step(k * 1e-3, h) == OK
@@ -110,8 +109,8 @@ def test_ticks_follow_the_times_if_steps_differ_slightly(h: float, estimator_fmu
 
 
 @pytest.mark.parametrize("start", [0.0, 1.7e9])
-def test_a_missing_step_is_an_error_at_any_time(start: float, estimator_fmu: Path) -> None:
-    with Instance(estimator_fmu) as fmu:
+def test_a_missing_step_is_an_error_at_any_time(start: float) -> None:
+    with FMI2() as fmu:
         fmu.initialise(COUNTING, start=start)
         for k in range(3000):  # at 1.7e9 s, where times are rounded to 0.2 us, too
             assert fmu.step(start + k * 1e-3, 1e-3) == OK
@@ -141,8 +140,8 @@ def test_an_input_derivative_is_used_for_one_step_only(name: str) -> None:
         assert results[0] == results[1], changed
 
 
-def test_a_step_of_too_many_ticks_is_refused(estimator_fmu: Path) -> None:
-    with Instance(estimator_fmu) as fmu:
+def test_a_step_of_too_many_ticks_is_refused() -> None:
+    with FMI2() as fmu:
         fmu.initialise(COUNTING)
         assert fmu.step(0.0, 1e9) == ERROR
         assert "step of 1e+09 s is more than 1e+09 times samplePeriod" in fmu.last_message

@@ -13,7 +13,7 @@ import pytest
 
 import sigmahat
 from fmi_instance import ERROR, OK, Instance, Instance3
-from fmi_runs import ESTIMATORS, PLANTS, Driver, Fmi, continue_from, names, random_steps
+from fmi_runs import ESTIMATORS, FMI2, PLANTS, Driver, Fmi, continue_from, names, random_steps
 
 each_kind = pytest.mark.parametrize("name", [*ESTIMATORS, "AwasPlant"])
 STEPS = random_steps(120, seed=1)
@@ -66,8 +66,8 @@ def test_an_instance_after_a_reset_is_like_a_new_one(name: str, fmi: Fmi) -> Non
             assert fmu.call("Reset") == OK
 
 
-def test_after_a_reset_without_setup_the_start_time_is_0(estimator_fmu: Path) -> None:
-    with Instance(estimator_fmu) as fmu:
+def test_after_a_reset_without_setup_the_start_time_is_0() -> None:
+    with FMI2() as fmu:
         driver = Driver(fmu)
         fmu.initialise()
         fresh = driver.run(STEPS[:20])
@@ -193,8 +193,8 @@ def test_a_buffer_that_is_too_small_for_a_state_is_refused(fmi: Fmi) -> None:
         fmu.free(state)
 
 
-def test_freeing_a_state_releases_its_memory(estimator_fmu: Path) -> None:
-    with Instance(estimator_fmu, memory=True) as fmu:
+def test_freeing_a_state_releases_its_memory() -> None:
+    with FMI2(memory=True) as fmu:
         fmu.initialise()
         without = set(fmu.blocks)
         assert without
@@ -249,10 +249,8 @@ def forge(fmu: Instance, format_: str, place: int, value: float) -> int:
     return status
 
 
-def test_a_forged_state_that_is_none_of_fmi_or_out_of_range_is_refused(
-    estimator_fmu: Path,
-) -> None:
-    with Instance(estimator_fmu) as fmu:
+def test_a_forged_state_that_is_none_of_fmi_or_out_of_range_is_refused() -> None:
+    with FMI2() as fmu:
         fmu.initialise()
         assert fmu.step(0.0, 1e-3) == OK
         for state in (0, 3, 5, 15, 16):
@@ -264,9 +262,9 @@ def test_a_forged_state_that_is_none_of_fmi_or_out_of_range_is_refused(
         assert "samplePeriod = -1 is out of its range" in fmu.last_message
 
 
-def test_a_plant_whose_position_is_no_number_is_refused(plant_fmu: Path) -> None:
+def test_a_plant_whose_position_is_no_number_is_refused() -> None:
     """The positions stand behind the parameters: each place of the state is tried."""
-    with Instance(plant_fmu) as fmu:
+    with FMI2("AwasPlant") as fmu:
         fmu.initialise()
         places = range(HEADER, len(saved(fmu)), 8)
         refused = [forge(fmu, "d", place, math.nan) for place in places]
@@ -274,8 +272,8 @@ def test_a_plant_whose_position_is_no_number_is_refused(plant_fmu: Path) -> None
         assert any("never saves" in text for *_, text in fmu.messages)
 
 
-def test_a_step_has_a_finite_end(plant_fmu: Path) -> None:
-    with Instance(plant_fmu) as fmu:
+def test_a_step_has_a_finite_end() -> None:
+    with FMI2("AwasPlant") as fmu:
         fmu.initialise({"noise.samplePeriod": 1e300}, start=1e308)
         assert fmu.step(1e308, 1e308) == ERROR
         assert "ends beyond the largest number" in fmu.last_message

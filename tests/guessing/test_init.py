@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import tomlkit
 
+import sigmahat
 from command_line import Shell
 from recorded_logs import write_log
 from sigmahat.files import toml_file
@@ -156,10 +157,10 @@ def test_a_motor_never_goes_with_the_link_of_another_joint(shell: Shell) -> None
     assert (knee["theta"], knee["q"]) == ("FILL IN", "knee_link_pos_rad")
 
 
-def test_the_gear_ratio_of_theta_is_that_of_the_motor(estimator_fmu: Path, tmp_path: Path) -> None:
+def test_the_gear_ratio_of_theta_is_that_of_the_motor(tmp_path: Path) -> None:
     text = '[ports.theta]\ncolumn = "a"\ngear_ratio = -70\n[ports.q]\ncolumn = "b"\n'
     path = tmp_path / "log.toml"
-    with Fmu(estimator_fmu) as fmu:
+    with Fmu(sigmahat.fmu("StiffnessEstimator")) as fmu:
         for given, gamma in (("", 70), ("motor.gamma = 0", 70), ("motor.gamma = 35", 35)):
             path.write_text(f"{text}[parameters]\n{given}\n")
             assert parameters(fmu, read_configuration(path))["motor.gamma"] == gamma

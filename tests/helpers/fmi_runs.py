@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import sigmahat
 from fmi_instance import OK, REAL, SIZE, Instance, Instance3
 
 ESTIMATORS = ["StiffnessEstimator", "AntagonisticStiffnessEstimator"]
@@ -108,8 +109,11 @@ class Fmi:
     kind: type[Instance] | type[Instance3]
     path: Callable[[str], Path]
 
-    def __call__(self, name: str = "StiffnessEstimator", **options: Any) -> Any:
-        return self.kind(self.path(name), **options)
+    def __call__(self, fmu: str = "StiffnessEstimator", /, **options: Any) -> Any:
+        return self.kind(self.path(fmu), **options)
+
+
+FMI2 = Fmi(Instance, sigmahat.fmu)
 
 
 def continue_from(

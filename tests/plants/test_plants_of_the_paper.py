@@ -2,12 +2,12 @@
 
 import math
 from collections.abc import Iterator
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 from fmi_instance import ERROR, OK, Instance
+from fmi_runs import FMI2
 from plant_runs import QUIET, STATES, relative_error, run_awas, run_plant, sinusoids, times
 from reference_joints import (
     SCREW,
@@ -84,9 +84,9 @@ def test_encoders_round_to_the_nearest_count(counts: float) -> None:
 
 
 @pytest.fixture
-def moving(plant_fmu: Path) -> Iterator[Instance]:
+def moving() -> Iterator[Instance]:
     """A plant after a step under torque."""
-    with Instance(plant_fmu) as plant:
+    with FMI2("AwasPlant") as plant:
         plant.initialise()
         plant.set_all({"tau": 0.3, "tau_c": 1.0})
         assert plant.step(0.0, 1e-3) == OK
@@ -108,7 +108,7 @@ OUTPUTS = [*STATES, "tau_e", "theta_measured", "tau_measured", "tau_e_measured"]
     ],
 )
 def test_a_step_with_a_bad_input_is_refused_and_leaves_the_plant_as_it_was(
-    moving: Instance, plant_fmu: Path, name: str, value: float, slope: float, message: str
+    moving: Instance, name: str, value: float, slope: float, message: str
 ) -> None:
     before = moving.get_all(OUTPUTS)
     good = moving.get(name)
@@ -121,7 +121,7 @@ def test_a_step_with_a_bad_input_is_refused_and_leaves_the_plant_as_it_was(
     moving.set(name, good)
     assert moving.set_derivative(name, 0.0) == OK
     assert moving.step(1e-3, 1e-3) == OK
-    with Instance(plant_fmu) as other:
+    with FMI2("AwasPlant") as other:
         other.initialise()
         other.set_all({"tau": 0.3, "tau_c": 1.0})
         assert other.step(0.0, 1e-3) == other.step(1e-3, 1e-3) == OK
