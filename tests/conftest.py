@@ -3,7 +3,6 @@
 import os
 import sys
 from collections import defaultdict
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -36,15 +35,9 @@ def c(build: Path) -> "Library":
 
 
 @pytest.fixture(scope="session")
-def twin(build: Path) -> Callable[[str], Path]:
-    """Path of the twin for FMI 3.0 of an FMU, with the binary of this machine."""
-    return lambda name: build / "fmi3" / f"{name}_FMI3.fmu"
-
-
-@pytest.fixture(scope="session")
-def fmi3(twin: Callable[[str], Path]) -> Fmi:
-    """FMI 3.0. Called with the name of an FMU, it makes an instance."""
-    return Fmi(Instance3, twin)
+def fmi3(build: Path) -> Fmi:
+    """FMI 3.0: the twins of the FMUs, with the binary of this machine."""
+    return Fmi(Instance3, lambda name: build / "fmi3" / f"{name}_FMI3.fmu")
 
 
 @pytest.fixture(params=["fmi2", "fmi3"])

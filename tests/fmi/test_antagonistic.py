@@ -9,7 +9,7 @@ import sigmahat
 from fmi_instance import ERROR, OK, WARNING, Instance
 from fmi_runs import FMI2, SIGNALS, names
 
-PAIR = sigmahat.fmu("AntagonisticStiffnessEstimator")
+PAIR = "AntagonisticStiffnessEstimator"
 OUTPUTS = [
     v.name
     for v in fmpy.read_model_description(str(sigmahat.fmu("StiffnessEstimator"))).modelVariables
@@ -55,7 +55,7 @@ def doubt_of_sum(pair: Instance, one: Instance, two: Instance) -> float:
     ],
 )
 def test_bit_identical_to_two_estimators(values: dict[str, float]) -> None:
-    with Instance(PAIR) as pair, FMI2() as one, FMI2() as two:
+    with FMI2(PAIR) as pair, FMI2() as one, FMI2() as two:
         of_pair = {f"motor_{i}.{k}": v for i, m in enumerate(MOTORS, 1) for k, v in m.items()}
         pair.initialise(values | of_pair)
         for single, motor in zip((one, two), MOTORS, strict=True):
@@ -82,7 +82,7 @@ def test_bit_identical_to_two_estimators(values: dict[str, float]) -> None:
 
 
 def test_messages_name_the_motor() -> None:
-    with Instance(PAIR) as pair:
+    with FMI2(PAIR) as pair:
         pair.set_all({"motor_2.gamma": 0.0})
         assert pair.enter() == OK
         assert pair.exit() == ERROR

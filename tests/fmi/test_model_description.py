@@ -2,7 +2,6 @@
 
 import math
 import zipfile
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -12,10 +11,9 @@ from lxml import etree
 
 import sigmahat
 from fmi_instance import OK, Instance, unpacked
-from fmi_runs import ESTIMATORS, PLANTS
+from fmi_runs import ESTIMATORS, PLANTS, Fmi
 
 FMUS = ESTIMATORS + PLANTS
-Twin = Callable[[str], Path]
 SCHEMAS = Path(fmpy.__file__).parent / "schema" / "fmi3"
 FILES = {
     "modelDescription.xml": "fmi3ModelDescription.xsd",
@@ -223,18 +221,18 @@ def test_no_output_depends_on_an_input_at_a_communication_point(fmu: Path) -> No
 # The twins for FMI 3.0
 
 
-def test_every_file_obeys_its_schema(fmu: Path, twin: Twin) -> None:
+def test_every_file_obeys_its_schema(fmu: Path, fmi3: Fmi) -> None:
     for file, schema in FILES.items():
-        etree.XMLSchema(file=str(SCHEMAS / schema)).assertValid(read(twin(fmu.stem), file))
+        etree.XMLSchema(file=str(SCHEMAS / schema)).assertValid(read(fmi3.path(fmu.stem), file))
 
 
 def items_of(variable: Any) -> list[tuple[str, ...]]:
     return [(item.name, item.value, item.description) for item in variable.declaredType.items]
 
 
-def test_variables_are_those_of_fmi_2(fmu: Path, twin: Twin) -> None:
+def test_variables_are_those_of_fmi_2(fmu: Path, fmi3: Fmi) -> None:
     old: Any = fmpy.read_model_description(str(fmu))
-    new: Any = fmpy.read_model_description(str(twin(fmu.stem)))
+    new: Any = fmpy.read_model_description(str(fmi3.path(fmu.stem)))
     assert (old.guid, old.modelName) == (new.guid, new.modelName)
     *others, time = new.modelVariables
     assert (time.name, time.causality) == ("time", "independent")
@@ -249,8 +247,8 @@ def test_variables_are_those_of_fmi_2(fmu: Path, twin: Twin) -> None:
             assert items_of(variable) == items_of(first)
 
 
-def test_outputs_depend_on_what_they_depend_on_in_fmi_2(fmu: Path, twin: Twin) -> None:
-    old, new = read(fmu), read(twin(fmu.stem))
+def test_outputs_depend_on_what_they_depend_on_in_fmi_2(fmu: Path, fmi3: Fmi) -> None:
+    old, new = read(fmu), read(fmi3.path(fmu.stem))
     for part, tag in (("Outputs", "Output"), ("InitialUnknowns", "InitialUnknown")):
         expected = {
             int(u.get("index")) - 1: {int(i) - 1 for i in u.get("dependencies").split()}
@@ -264,15 +262,15 @@ def test_outputs_depend_on_what_they_depend_on_in_fmi_2(fmu: Path, twin: Twin) -
 
 
 @pytest.mark.parametrize("plant", PLANTS)
-def test_the_terminals_of_a_plant_and_its_estimator_belong_together(plant: str, twin: Twin) -> None:
+def test_the_terminals_of_a_plant_and_its_estimator_belong_together(plant: str, fmi3: Fmi) -> None:
     terminals, estimator = [], ESTIMATORS[plant == "AntagonisticVsaPlant"]
     for name in (plant, estimator):
-        root = read(twin(name), "terminalsAndIcons/terminalsAndIcons.xml")
+        root = read(fmi3.path(name), "terminalsAndIcons/terminalsAndIcons.xml")
         (terminal,) = root.iterfind("Terminals/Terminal")
         assert (terminal.get("name"), terminal.get("matchingRule")) == ("measurements", "bus")
         members = {m.get("memberName"): m.get("variableName") for m in terminal}
         causality = {
-            v.get("name"): v.get("causality") for v in read(twin(name)).find("ModelVariables")
+            v.get("name"): v.get("causality") for v in read(fmi3.path(name)).find("ModelVariables")
         }
         assert {causality[variable] for variable in members.values()} == {
             "output" if name == plant else "input"

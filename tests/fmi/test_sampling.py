@@ -74,7 +74,7 @@ def run(name: str, h: Fraction) -> list[list[float]]:
     # Without a set-point its powers cannot be distinguished, so rls.m is 1.
     start = {"rls.m": 1} if name == "AntagonisticStiffnessEstimator" else {}
     found = []
-    with Instance(sigmahat.fmu(name)) as fmu:
+    with FMI2(name) as fmu:
         inputs = names(fmu, "input")
         outputs = [n for n in names(fmu, "output") if fmu.variables[n].type == "Real"]
         fmu.initialise(start)
@@ -123,13 +123,12 @@ def test_a_missing_step_is_an_error_at_any_time(start: float) -> None:
 
 @pytest.mark.parametrize("name", ESTIMATORS + PLANTS)
 def test_an_input_derivative_is_used_for_one_step_only(name: str) -> None:
-    path = sigmahat.fmu(name)
-    with Instance(path) as fmu:
+    with FMI2(name) as fmu:
         inputs = names(fmu, "input")
     for changed in inputs:
         results = []
         for again in (None, 0.0):  # in the second step: no call, or a slope of 0
-            with Instance(path) as fmu:
+            with FMI2(name) as fmu:
                 fmu.initialise()
                 assert fmu.set_derivative(changed, 3.0) == OK
                 assert fmu.step(0.0, 3e-3) == OK

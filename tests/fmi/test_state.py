@@ -4,15 +4,12 @@ import ctypes
 import math
 import random
 import struct
-from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
-from pathlib import Path
 
 import pytest
 
-import sigmahat
-from fmi_instance import ERROR, OK, Instance, Instance3
+from fmi_instance import ERROR, OK, Instance
 from fmi_runs import ESTIMATORS, FMI2, PLANTS, Driver, Fmi, continue_from, names, random_steps
 
 each_kind = pytest.mark.parametrize("name", [*ESTIMATORS, "AwasPlant"])
@@ -24,10 +21,8 @@ POINTS = random.Random(2).sample(range(len(STEPS)), 12)
     ("name", "start"),
     [*((n, {"method": m}) for n in ESTIMATORS for m in (1, 2)), *((n, {}) for n in PLANTS)],
 )
-def test_both_versions_give_the_same_bits(
-    name: str, start: dict[str, float], twin: Callable[[str], Path]
-) -> None:
-    with Instance(sigmahat.fmu(name)) as old, Instance3(twin(name)) as new:
+def test_both_versions_give_the_same_bits(name: str, start: dict[str, float], fmi3: Fmi) -> None:
+    with FMI2(name) as old, fmi3(name) as new:
         old_run, new_run = Driver(old, held=True), Driver(new)
         assert old_run.outputs == new_run.outputs and len(new_run.outputs) >= 10
         for fmu in (old, new):

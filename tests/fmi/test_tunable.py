@@ -12,8 +12,8 @@ import pytest
 
 import sigmahat
 from c_library import MEASUREMENTS, Estimator, load
-from fmi_instance import OK, Instance
-from fmi_runs import ESTIMATORS, PLANTS, SIGNALS, names
+from fmi_instance import OK
+from fmi_runs import ESTIMATORS, FMI2, PLANTS, SIGNALS, names
 
 T = 1e-3  # s
 STEPS = 60
@@ -102,7 +102,7 @@ def run_fmu(
 ) -> list[list[float]]:
     """Outputs after every step. Parameters are changed before step number CHANGE."""
     results = []
-    with Instance(sigmahat.fmu(fmu)) as instance:
+    with FMI2(fmu) as instance:
         instance.initialise(start)
         inputs = names(instance, "input")
         for k in range(STEPS):
@@ -164,7 +164,7 @@ def test_an_estimator_continues_like_the_library_with_the_new_value(
         for output in [f"{n}{side}" for n in SCALARS] + [f"eta{side}[{i},{j}]" for i, j in ETA]
     ]
     start: Mapping[str, float] = METHODS[method] | CONFIGURATION.get(name, {})
-    with Instance(sigmahat.fmu(fmu)) as instance:
+    with FMI2(fmu) as instance:
         value = other_value(name, instance.variables[name])
     with_change = run_fmu(fmu, outputs, start, {name: value})
     without = unchanged_run(fmu, tuple(outputs), tuple(start.items()))
@@ -180,7 +180,7 @@ def test_an_estimator_continues_like_the_library_with_the_new_value(
 @pytest.mark.parametrize(("fmu", "name"), tunables(PLANTS))
 def test_a_plant_continues_from_its_state_with_the_new_value(fmu: str, name: str) -> None:
     """Like another plant that has the new value from the start and starts in that state."""
-    with Instance(sigmahat.fmu(fmu)) as instance:
+    with FMI2(fmu) as instance:
         variables = instance.variables
         outputs = names(instance, "output")
         value = other_value(name, variables[name])
@@ -193,7 +193,7 @@ def test_a_plant_continues_from_its_state_with_the_new_value(fmu: str, name: str
     assert (with_change[CHANGE] != without[CHANGE]).any()  # already in the next step
 
     at_change = dict(zip(outputs, with_change[CHANGE - 1], strict=True))
-    with Instance(sigmahat.fmu(fmu)) as other:
+    with FMI2(fmu) as other:
         other.initialise(
             exact | {f"initial.{n}": at_change[n] for n in states} | {name: value}, start=CHANGE * T
         )
