@@ -57,11 +57,8 @@ INTEGERS_OF_FILTERED_REGRESSION = [
     *("blocks.constant.size", "blocks.drifting.size", "blocks.recent.size"),
     *("change.changed.size", "change.following"),
     *("signals.decimation", "mean.samples", "row.tick"),
-    *(
-        f"{posterior}.{member}"
-        for posterior in ("posterior", "refit.posterior")
-        for member in ("information.size", "column")
-    ),
+    *("posterior.information.size", "posterior.column"),
+    *("refit.posterior.information.size", "refit.posterior.column"),
 ]
 
 

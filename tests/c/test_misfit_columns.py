@@ -168,11 +168,7 @@ def test_every_doubt_has_its_name(c: Library) -> None:
         (Joint(duration=1.0, deformation=0.0, amplitude=0.0), {}, "NOT_EXCITED"),
         (Joint(duration=0.3, deformation=2e-4), {}, "NOT_EXCITED"),
         (Joint(duration=4.0, frequency=2.0, D_theta=2.5e-3), {}, "FRICTION"),
-        (
-            Joint(duration=4.0, frequency=8.0, amplitude=0.1, B=4.6e-5),
-            {"prior.B": 0.1},
-            "INERTIA",
-        ),
+        (Joint(duration=4.0, frequency=8.0, amplitude=0.1, B=4.6e-5), {"prior.B": 0.1}, "INERTIA"),
         (Joint(duration=4.0, stiffness=lambda t: -np.ones_like(t)), {}, "NEGATIVE_STIFFNESS"),
     ],
 )

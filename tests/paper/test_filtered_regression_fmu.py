@@ -22,11 +22,8 @@ def multisine(rng: np.random.Generator, t: Array) -> tuple[Array, Array]:
     frequency = np.exp(rng.uniform(np.log(0.1), np.log(10), count))
     amplitude = rng.uniform(0.3, 1, count)
     phase = rng.uniform(0, 2 * np.pi, count)
-    tau = (
-        0.4
-        * (amplitude / amplitude.sum())
-        @ np.sin(2 * np.pi * np.outer(frequency, t) + phase[:, None])
-    )
+    sines = np.sin(2 * np.pi * np.outer(frequency, t) + phase[:, None])
+    tau = 0.4 * (amplitude / amplitude.sum()) @ sines
     count = rng.integers(1, 4)
     frequency = np.exp(rng.uniform(np.log(0.05), np.log(0.5), count))
     amplitude = rng.uniform(0.3, 1, count)

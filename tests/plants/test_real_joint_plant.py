@@ -47,7 +47,6 @@ def together(misfits: Mapping[str, Mapping[str, float]]) -> dict[str, float]:
 
 
 EVERYTHING = together({**OTHERS, **OF_THE_SPRING, **OF_THE_FRICTION})
-ENCODERS = {"encoder.q": 0.0, "encoder.theta": 0.0}
 
 
 def inputs(h: float, duration: float) -> Array:
@@ -182,7 +181,8 @@ def test_encoders_are_eccentric_have_another_zero_and_are_read_late() -> None:
     }
     given = inputs(1e-3, 0.5)
     record = ("q_measured", "theta_measured")
-    out = run(1e-3, given, {**start, **ENCODERS}, *record)
+    exact = {**start, "encoder.q": 0.0, "encoder.theta": 0.0}
+    out = run(1e-3, given, exact, *record)
     q = out["q"] + 3e-4 * np.sin(out["q"] + 0.4) + 2e-3 + 2e-3 * out["q_dot"]
     theta = out["theta"] + 8e-5 * np.sin(50 * out["theta"] + 0.7)
     np.testing.assert_allclose(out["q_measured"], q, rtol=0, atol=1e-14)

@@ -70,10 +70,7 @@ def test_fmpy_rebuilds_it_from_its_sources(name: str, released: Path, tmp_path: 
 
 @pytest.mark.parametrize("name", FMUS + TWINS)
 def test_fmpy_and_the_manipulation_toolbox_find_no_error(
-    name: str,
-    released: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
+    name: str, released: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     fmu = str(released / f"{name}.fmu")
     assert validate_fmu(fmu) == []
