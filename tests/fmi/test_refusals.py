@@ -116,8 +116,7 @@ def test_parameters_that_contradict_each_other_are_named_at_the_end_of_the_initi
 def test_a_bad_measurement_skips_the_tick_and_warns_once(name: str, fmi: Fmi) -> None:
     good = {"theta": 0.1, "q": 0.11, "theta_c": 5.0, "tau": 0.2, "tau_e_sensor": 1.0}
     statuses = []
-    with fmi() as fmu:
-        fmu.initialise({"modality": 2, "rls.P_0": 1.0, "rls.kind": 2})
+    with fmi().initialise({"modality": 2, "rls.P_0": 1.0, "rls.kind": 2}) as fmu:
         for k, bad in enumerate([None, None, math.nan, math.inf, 1e300, None, -math.inf]):
             before = fmu.get_all(["sigma", "tau_e", "theta_dot", "phi", "rho", "eta[0,0]"])
             fmu.set_all(good | ({name: bad} if bad is not None else {}))
@@ -132,16 +131,14 @@ def test_a_bad_measurement_skips_the_tick_and_warns_once(name: str, fmi: Fmi) ->
 
 
 def test_the_warning_says_if_the_regression_overflows(fmi: Fmi) -> None:
-    with fmi() as fmu:
-        fmu.initialise()
+    with fmi().initialise() as fmu:
         fmu.set_all({"q": 1e12, "theta": -1e12})
         assert fmu.step(0.0, 1e-3) == WARNING
         assert "regression overflows at theta = -1e+12" in fmu.last_message
 
 
 def test_a_bad_input_derivative_skips_the_ticks_that_use_it() -> None:
-    with FMI2() as fmu:
-        fmu.initialise()
+    with FMI2().initialise() as fmu:
         assert fmu.set_derivative("theta", math.nan) == OK
         assert fmu.step(0.0, 2e-3) == WARNING
         assert "expected theta finite" in fmu.last_message and "nan" in fmu.last_message
@@ -287,8 +284,7 @@ def test_invalid_references_and_values_are_refused(name: str, fmi: Fmi) -> None:
 
 
 def test_a_set_with_one_bad_reference_changes_nothing(fmi: Fmi) -> None:
-    with fmi() as fmu:
-        fmu.initialise()
+    with fmi().initialise() as fmu:
         references = (ctypes.c_uint * 2)(fmu.reference("tau"), 100000)
         assert fmu.access(f"Set{fmu.real}", references, (REAL * 2)(7.0, 7.0)) == ERROR
         assert fmu.get("tau") == 0.0
@@ -320,8 +316,7 @@ def test_an_argument_that_is_missing_is_named(
 
 
 def test_derivatives_of_inputs_need_an_input_and_the_order_1() -> None:
-    with FMI2() as fmu:
-        fmu.initialise()
+    with FMI2().initialise() as fmu:
         tau, value = fmu.references(["tau"]), (REAL * 1)(1.0)
         assert fmu.set_derivative("tau", 1.0, order=2) == ERROR
         assert fmu.set_derivative("motor.B", 1.0) == ERROR
@@ -335,8 +330,7 @@ RESULTS = ["eventHandlingNeeded", "terminateSimulation", "earlyReturn", "lastSuc
 
 
 def test_a_step_needs_a_place_for_each_of_its_results(fmi3: Fmi) -> None:
-    with fmi3() as fmu:
-        fmu.initialise()
+    with fmi3().initialise() as fmu:
         for missing, name in enumerate(RESULTS):
             given = [None if i == missing else ctypes.byref(REAL()) for i in range(4)]
             assert fmu.call("DoStep", REAL(0.0), REAL(1e-3), True, *given) == ERROR
@@ -440,8 +434,7 @@ def test_lack_of_memory_gives_no_instance_and_no_leak(after: int) -> None:
 
 
 def test_lack_of_memory_for_a_state_is_an_error() -> None:
-    with FMI2(memory=True) as fmu:
-        fmu.initialise()
+    with FMI2(memory=True).initialise() as fmu:
         data, first, full = fmu.serialise(fmu.save()), fmu.component, False
         fmu.component = limit_memory(fmu, lambda: full)()
         full = True
@@ -494,8 +487,7 @@ def test_in_fmi_3_named_log_categories_are_turned_on_and_off(fmi3: Fmi) -> None:
         return [category for _, category, _ in fmu.messages]
 
     error, warning, event = "logStatusError", "logStatusWarning", "logEvents"
-    with fmi3() as fmu:
-        fmu.initialise()
+    with fmi3().initialise() as fmu:
         assert logged(fmu) == [error, warning, event]
         assert choose(fmu, True, b"logEvents") == OK  # the others stay
         assert logged(fmu) == [error, warning, event]
@@ -505,8 +497,7 @@ def test_in_fmi_3_named_log_categories_are_turned_on_and_off(fmi3: Fmi) -> None:
         assert logged(fmu) == []
         assert choose(fmu, True, b"logStatusError") == OK
         assert logged(fmu) == [error]
-    with fmi3(logging_on=False) as fmu:
-        fmu.initialise()
+    with fmi3(logging_on=False).initialise() as fmu:
         assert logged(fmu) == [error]
 
 
@@ -610,8 +601,7 @@ def test_the_status_gives_the_time_that_was_reached() -> None:
         assert fmu.call("GetRealStatus", 2, ctypes.byref(time)) == OK
         return time.value
 
-    with FMI2() as fmu:
-        fmu.initialise(start=0.5)
+    with FMI2().initialise(start=0.5) as fmu:
         assert reached(fmu) == 0.5
         assert fmu.step(0.5, 1e-3) == OK
         assert fmu.step(0.7, 1e-3) == ERROR

@@ -39,8 +39,7 @@ def test_a_million_steps_of_a_sample_period_are_a_million_ticks() -> None:
 
 @pytest.mark.parametrize("h", [1e-4, 1e-3, 2.5e-3, 1 / 60, 1e-3 / 7, 0.016666666666666677])
 def test_a_step_of_any_length_computes_the_ticks_within_it(h: float) -> None:
-    with FMI2() as fmu:
-        fmu.initialise(COUNTING)
+    with FMI2().initialise(COUNTING) as fmu:
         for k in range(300):
             assert fmu.step(k * h, h) == OK
             # those with t_k < t + h: a tick at the end of the step belongs to the next one
@@ -48,8 +47,7 @@ def test_a_step_of_any_length_computes_the_ticks_within_it(h: float) -> None:
 
 
 def test_steps_much_shorter_than_the_tolerance_add_up() -> None:
-    with FMI2() as fmu:
-        fmu.initialise(COUNTING)
+    with FMI2().initialise(COUNTING) as fmu:
         h = 1e-3 / 3e6
         for k in range(10):
             assert fmu.step(k * h, h) == OK
@@ -100,8 +98,7 @@ def test_inputs_with_derivatives_give_the_same_ticks_for_any_step(name: str) -> 
 
 @pytest.mark.parametrize("h", [1.0009e-3, 0.9991e-3])
 def test_ticks_follow_the_times_if_steps_differ_slightly(h: float) -> None:
-    with FMI2() as fmu:
-        fmu.initialise(COUNTING)
+    with FMI2().initialise(COUNTING) as fmu:
         for k in range(3000):
             assert fmu.step(k * 1e-3, h) == OK
         end = 2999 * 1e-3 + h
@@ -110,8 +107,7 @@ def test_ticks_follow_the_times_if_steps_differ_slightly(h: float) -> None:
 
 @pytest.mark.parametrize("start", [0.0, 1.7e9])
 def test_a_missing_step_is_an_error_at_any_time(start: float) -> None:
-    with FMI2() as fmu:
-        fmu.initialise(COUNTING, start=start)
+    with FMI2().initialise(COUNTING, start=start) as fmu:
         for k in range(3000):  # at 1.7e9 s, where times are rounded to 0.2 us, too
             assert fmu.step(start + k * 1e-3, 1e-3) == OK
             assert ticks(fmu) == k + 1
@@ -128,8 +124,7 @@ def test_an_input_derivative_is_used_for_one_step_only(name: str) -> None:
     for changed in inputs:
         results = []
         for again in (None, 0.0):  # in the second step: no call, or a slope of 0
-            with FMI2(name) as fmu:
-                fmu.initialise()
+            with FMI2(name).initialise() as fmu:
                 assert fmu.set_derivative(changed, 3.0) == OK
                 assert fmu.step(0.0, 3e-3) == OK
                 if again is not None:
@@ -140,8 +135,7 @@ def test_an_input_derivative_is_used_for_one_step_only(name: str) -> None:
 
 
 def test_a_step_of_too_many_ticks_is_refused() -> None:
-    with FMI2() as fmu:
-        fmu.initialise(COUNTING)
+    with FMI2().initialise(COUNTING) as fmu:
         assert fmu.step(0.0, 1e9) == ERROR
         assert "step of 1e+09 s is more than 1e+09 times samplePeriod" in fmu.last_message
         assert fmu.step(0.0, 1e-3) == OK  # the instance can continue
@@ -152,8 +146,7 @@ def test_parameters_that_contradict_each_other_stop_the_step_until_they_are_corr
     fmi: Fmi,
 ) -> None:
     """Whether they were set, or are those of a state."""
-    with fmi() as fmu:
-        fmu.initialise(COUNTING)
+    with fmi().initialise(COUNTING) as fmu:
         assert fmu.step(0.0, 1e-3) == OK
         fmu.set_all({"filter.V_min": 11.0})
         state = fmu.save()

@@ -175,8 +175,7 @@ def test_a_damaged_or_foreign_state_is_refused(name: str, fmi: Fmi) -> None:
 
 
 def test_a_buffer_that_is_too_small_for_a_state_is_refused(fmi: Fmi) -> None:
-    with fmi() as fmu:
-        fmu.initialise()
+    with fmi().initialise() as fmu:
         state = fmu.save()
         size = len(fmu.serialise(state))
         buffer = ctypes.create_string_buffer(b"\xa5" * size, size)
@@ -189,8 +188,7 @@ def test_a_buffer_that_is_too_small_for_a_state_is_refused(fmi: Fmi) -> None:
 
 
 def test_freeing_a_state_releases_its_memory() -> None:
-    with FMI2(memory=True) as fmu:
-        fmu.initialise()
+    with FMI2(memory=True).initialise() as fmu:
         without = set(fmu.blocks)
         assert without
         state = fmu.save()
@@ -245,8 +243,7 @@ def forge(fmu: Instance, format_: str, place: int, value: float) -> int:
 
 
 def test_a_forged_state_that_is_none_of_fmi_or_out_of_range_is_refused() -> None:
-    with FMI2() as fmu:
-        fmu.initialise()
+    with FMI2().initialise() as fmu:
         assert fmu.step(0.0, 1e-3) == OK
         for state in (0, 3, 5, 15, 16):
             assert forge(fmu, "I", MODE, state) == ERROR
@@ -259,8 +256,7 @@ def test_a_forged_state_that_is_none_of_fmi_or_out_of_range_is_refused() -> None
 
 def test_a_plant_whose_position_is_no_number_is_refused() -> None:
     """The positions stand behind the parameters: each place of the state is tried."""
-    with FMI2("AwasPlant") as fmu:
-        fmu.initialise()
+    with FMI2("AwasPlant").initialise() as fmu:
         places = range(HEADER, len(saved(fmu)), 8)
         refused = [forge(fmu, "d", place, math.nan) for place in places]
         assert refused.count(ERROR) > 6
@@ -268,7 +264,6 @@ def test_a_plant_whose_position_is_no_number_is_refused() -> None:
 
 
 def test_a_step_has_a_finite_end() -> None:
-    with FMI2("AwasPlant") as fmu:
-        fmu.initialise({"noise.samplePeriod": 1e300}, start=1e308)
+    with FMI2("AwasPlant").initialise({"noise.samplePeriod": 1e300}, start=1e308) as fmu:
         assert fmu.step(1e308, 1e308) == ERROR
         assert "ends beyond the largest number" in fmu.last_message

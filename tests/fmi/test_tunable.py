@@ -102,8 +102,7 @@ def run_fmu(
 ) -> list[list[float]]:
     """Outputs after every step. Parameters are changed before step number CHANGE."""
     results = []
-    with FMI2(fmu) as instance:
-        instance.initialise(start)
+    with FMI2(fmu).initialise(start) as instance:
         inputs = names(instance, "input")
         for k in range(STEPS):
             if k == CHANGE:

@@ -18,7 +18,7 @@ from fmpy import fmi2, fmi3
 
 OK, WARNING, DISCARD, ERROR = 0, 1, 2, 3
 SIZE, REAL = ctypes.c_size_t, ctypes.c_double
-T = TypeVar("T")
+InstanceT = TypeVar("InstanceT", bound="_Instance")
 ENVIRONMENT = 4711  # of the importer, which the logger receives
 
 
@@ -55,7 +55,7 @@ class _Instance:
         self.dll: Any = ctypes.CDLL(self._loaded.dll._name)
         self.component: int | None = None
 
-    def __enter__(self: T) -> T:
+    def __enter__(self: InstanceT) -> InstanceT:
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -120,15 +120,16 @@ class _Instance:
         return self.call("ExitInitializationMode")
 
     def initialise(
-        self,
+        self: InstanceT,
         values: Mapping[str, float] | None = None,
         start: float = 0.0,
         stop: float | None = None,
-    ) -> None:
-        """Sets start values and makes the instance ready for the first step."""
+    ) -> InstanceT:
+        """Sets start values and makes the instance, which is returned, ready for the first step."""
         self.set_all(values or {})
         assert self.enter(start, stop) == OK, self.messages
         assert self.exit() == OK, self.messages
+        return self
 
     def step(self, t: float, h: float) -> int:
         raise NotImplementedError

@@ -184,8 +184,7 @@ def test_tuned_parameters_have_their_effect_while_it_runs(
     z: dict[str, NDArray[np.float64]],
 ) -> None:
     estimator = sigmahat.Estimator({"method": "FilteredRegression"})
-    with Instance(sigmahat.fmu("StiffnessEstimator")) as fmu:
-        fmu.initialise({"method": 2})
+    with Instance(sigmahat.fmu("StiffnessEstimator")).initialise({"method": 2}) as fmu:
         for k in range(1500):
             row = {name: float(each[k]) for name, each in z.items()}
             row["tau_e_sensor"] = 0.1 * row["q"]

@@ -21,8 +21,7 @@ from sigmahat.runs.engine import run
     ("name", "torque"), [("AwasPlant", "tau"), ("AntagonisticVsaPlant", "tau_1")]
 )
 def test_an_absurd_torque_is_refused_soon_and_named(name: str, torque: str) -> None:
-    with FMI2(name) as fmu:
-        fmu.initialise({})
+    with FMI2(name).initialise() as fmu:
         fmu.set_all({torque: -1e9})
         begin = time.process_time()
         assert fmu.step(0.0, 1e-3) == ERROR
@@ -38,8 +37,8 @@ def test_an_absurd_torque_is_refused_soon_and_named(name: str, torque: str) -> N
 def test_the_torques_of_a_large_robot_are_accepted(name: str) -> None:
     """Jumps of 1e5 N.m on the link and of 1e3 N.m on the axis of the motor."""
     joint = {"link.M": 1e3, "motor.B": 0.02, "motor.gamma": 200.0, "spring.k_1": 1e6}
-    with FMI2(name) as fmu:
-        fmu.initialise({**joint, "link.tau_coulomb": 100.0, "motor.tau_coulomb": 1.0})
+    friction = {"link.tau_coulomb": 100.0, "motor.tau_coulomb": 1.0}
+    with FMI2(name).initialise({**joint, **friction}) as fmu:
         for k in range(500):
             jump = 1.0 if k // 50 % 2 else -1.0
             fmu.set_all({"tau": 1e3 * jump, "tau_ext": 1e5 * jump})
@@ -170,8 +169,7 @@ def test_noise_in_steps_that_do_not_fit_its_period() -> None:
 
 def test_noise_does_not_depend_on_a_last_step_of_a_moment() -> None:
     """As OMSimulator makes it, where the sum of its steps misses the stop time by rounding."""
-    with FMI2("AwasPlant") as fmu:
-        fmu.initialise({"noise.tau_variance": 1.0})
+    with FMI2("AwasPlant").initialise({"noise.tau_variance": 1.0}) as fmu:
         t = 0.0
         for _ in range(2000):
             assert fmu.step(t, 1e-3) == OK
@@ -187,8 +185,7 @@ def test_noise_does_not_depend_on_a_last_step_of_a_moment() -> None:
 
 
 def test_a_step_of_more_periods_than_can_be_counted_is_refused() -> None:
-    with FMI2("AwasPlant") as fmu:
-        fmu.initialise({"noise.samplePeriod": 1e-9})
+    with FMI2("AwasPlant").initialise({"noise.samplePeriod": 1e-9}) as fmu:
         assert fmu.step(0.0, 1e7) == ERROR
         assert "1e+07 s is more than 1e+15 times noise.samplePeriod" in fmu.messages[-1][-1]
 

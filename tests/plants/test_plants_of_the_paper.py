@@ -86,8 +86,7 @@ def test_encoders_round_to_the_nearest_count(counts: float) -> None:
 @pytest.fixture
 def moving() -> Iterator[Instance]:
     """A plant after a step under torque."""
-    with FMI2("AwasPlant") as plant:
-        plant.initialise()
+    with FMI2("AwasPlant").initialise() as plant:
         plant.set_all({"tau": 0.3, "tau_c": 1.0})
         assert plant.step(0.0, 1e-3) == OK
         yield plant
@@ -121,8 +120,7 @@ def test_a_step_with_a_bad_input_is_refused_and_leaves_the_plant_as_it_was(
     moving.set(name, good)
     assert moving.set_derivative(name, 0.0) == OK
     assert moving.step(1e-3, 1e-3) == OK
-    with FMI2("AwasPlant") as other:
-        other.initialise()
+    with FMI2("AwasPlant").initialise() as other:
         other.set_all({"tau": 0.3, "tau_c": 1.0})
         assert other.step(0.0, 1e-3) == other.step(1e-3, 1e-3) == OK
         assert moving.get_all(OUTPUTS) == other.get_all(OUTPUTS)
