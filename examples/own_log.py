@@ -16,32 +16,15 @@ import numpy as np
 import sigmahat
 
 CONFIGURATION = """\
-[time]
-column = "time_s"
-
-[ports.theta]               # principal motor; its encoder sits before the gear
-column = "motor_counts"
-unit = "counts"
-counts_per_turn = 800
-gear_ratio = 50
-
-[ports.q]                   # link
-column = "link_deg"
-unit = "deg"
-
-[ports.theta_c]             # motor that sets the stiffness
-column = "lever_rad"
-
-[ports.tau]                 # torque of the principal motor, before its gear
-column = "current_A"
-unit = "A"
-torque_constant = 0.05      # N.m/A
-
-[parameters]                # the motor as its data sheet says, 20 % off
+time.column = "time_s"
+[ports]  # theta: principal motor, its encoder before the gear; q: link; theta_c: sets the stiffness
+theta = {column = "motor_counts", unit = "counts", counts_per_turn = 800, gear_ratio = 50}
+q = {column = "link_deg", unit = "deg"}
+theta_c = {column = "lever_rad"}
+tau = {column = "current_A", unit = "A", torque_constant = 0.05}  # of the principal motor [N.m/A]
+[parameters]  # the motor as its data sheet says, 20 % off
 samplePeriod = 0.001
-motor.B = 1.84e-5
-motor.D_theta = 1.2e-3
-motor.gamma = 50
+motor = {B = 1.84e-5, D_theta = 1.2e-3, gamma = 50}
 """
 
 
