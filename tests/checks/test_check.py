@@ -19,24 +19,21 @@ from checked_logs import (
     log_by_hand,
 )
 from command_line import Shell
-from recorded_logs import CONFIGURATION, awas_log, configured, write_log
+from recorded_logs import CONFIGURATION, awas_log, configured, in_memory, write_log
 from sigmahat.checks.check import check
 from sigmahat.checks.findings import Checked, Finding, Kind, Severity
 from sigmahat.checks.text import sentence
 from sigmahat.joint.curve import stiffness_in_the_middle
-from sigmahat.logs.configuration import read_configuration
 from sigmahat.logs.estimate import estimate
 from sigmahat.logs.log import LogInMemory
 
 
-def checked(columns: Mapping[str, Array], text: str, folder: Path) -> Checked:
-    path = folder / "log.toml"
-    path.write_text(text)
-    return check(LogInMemory(Path("log"), columns), read_configuration(path))
+def checked(columns: Mapping[str, Array], text: str) -> Checked:
+    return check(LogInMemory(Path("log"), columns), in_memory(text))
 
 
-def wrong(columns: Mapping[str, Array], text: str, folder: Path) -> list[Finding]:
-    return [*checked(columns, text, folder).of(Severity.WRONG)]
+def wrong(columns: Mapping[str, Array], text: str) -> list[Finding]:
+    return [*checked(columns, text).of(Severity.WRONG)]
 
 
 PROPOSED = {
@@ -54,10 +51,10 @@ PROPOSED = {
 
 
 @pytest.mark.parametrize("name", WRONG)
-def test_a_wrong_key_is_named_first_with_the_right_value(name: str, tmp_path: Path) -> None:
+def test_a_wrong_key_is_named_first_with_the_right_value(name: str) -> None:
     old, new, keys = WRONG[name]
     assert old in RIGHT
-    found = checked(knee_log(), RIGHT.replace(old, new), tmp_path)
+    found = checked(knee_log(), RIGHT.replace(old, new))
     if name == "torque constant + 10 %":  # no log can show it
         assert not found.is_wrong
         assert keys[0] in [each.key for each in found.of(Severity.RESTS_ON)]
@@ -69,72 +66,68 @@ def test_a_wrong_key_is_named_first_with_the_right_value(name: str, tmp_path: Pa
         assert name not in PROPOSED or first.proposed == PROPOSED[name]
 
 
-def test_a_proposed_delay_puts_the_torque_right(tmp_path: Path) -> None:
+def test_a_proposed_delay_puts_the_torque_right() -> None:
     late = RIGHT.replace('"current"', '"late_current"\ndelay = 0.010')
-    assert wrong(knee_log(), late, tmp_path) == []
+    assert wrong(knee_log(), late) == []
+
+
+EVEN_POWERS = RIGHT.replace("rls.n = 1", "rls.symmetric = false\nrls.n = 6")
+"""As after identify, which chooses a polynomial with even powers for most joints."""
 
 
 @pytest.mark.parametrize(
-    ("gear", "gamma"),
-    [(10.0, True), (1000.0, False), (0.01, True), (-100.0, False), (101.0, True), (101.0, False)],
+    ("gear", "gamma", "right"),
+    [
+        *((10.0, True, RIGHT), (1000.0, False, RIGHT), (0.01, True, RIGHT)),
+        *((-100.0, False, RIGHT), (101.0, True, RIGHT), (101.0, False, RIGHT)),
+        *((gear, False, EVEN_POWERS) for gear in (10.0, 0.01, 101.0)),
+    ],
 )
-def test_a_wrong_gear_ratio_is_named(gear: float, gamma: bool, tmp_path: Path) -> None:
+def test_a_wrong_gear_ratio_is_named(gear: float, gamma: bool, right: str) -> None:
     """Whether motor.gamma is as wrong, because it is that of the encoder, or right."""
-    text = RIGHT.replace("gear_ratio = 100", f"gear_ratio = {gear}")
+    text = right.replace("gear_ratio = 100", f"gear_ratio = {gear}")
     if gamma:
         text = text.replace("gamma = 100", f"gamma = {abs(gear)}")
-    first = wrong(knee_log(), text, tmp_path)[0]
-    assert (first.key, first.proposed) == ("ports.theta.gear_ratio", 100.0)
-
-
-@pytest.mark.parametrize("gear", [10.0, 0.01, 101.0])
-def test_a_wrong_gear_ratio_is_named_with_even_powers_too(gear: float, tmp_path: Path) -> None:
-    """As after identify, which chooses a polynomial with even powers for most joints."""
-    text = RIGHT.replace("gear_ratio = 100", f"gear_ratio = {gear}")
-    text = text.replace("rls.n = 1", "rls.symmetric = false\nrls.n = 6")
-    first = wrong(knee_log(), text, tmp_path)[0]
+    first = wrong(knee_log(), text)[0]
     assert (first.key, first.proposed) == ("ports.theta.gear_ratio", 100.0)
 
 
 @pytest.mark.parametrize("hold", [0.0, 0.05])
 @pytest.mark.parametrize("gear", [10.0, 1000.0, 0.01, -100.0])
-def test_a_wrong_gear_ratio_is_named_if_a_hand_moves_the_link(
-    gear: float, hold: float, tmp_path: Path
-) -> None:
+def test_a_wrong_gear_ratio_is_named_if_a_hand_moves_the_link(gear: float, hold: float) -> None:
     """Then the torque is none, or that of a controller: it looks like the torque of a spring."""
-    right = RIGHT.replace("range.phi = 0.03", "range.phi = 0.05")
-    right = right.replace("rls.n = 1", "rls.symmetric = false\nrls.n = 6")
+    right = EVEN_POWERS.replace("range.phi = 0.03", "range.phi = 0.05")
     log = log_by_hand(hold)
-    assert wrong(log, right, tmp_path) == []
-    first = wrong(log, right.replace("gear_ratio = 100", f"gear_ratio = {gear}"), tmp_path)[0]
+    assert wrong(log, right) == []
+    first = wrong(log, right.replace("gear_ratio = 100", f"gear_ratio = {gear}"))[0]
     assert (first.key, first.proposed) == ("ports.theta.gear_ratio", 100.0)
 
 
-def test_a_gear_ratio_upside_down_is_no_swap_of_columns_in_one_unit(tmp_path: Path) -> None:
+def test_a_gear_ratio_upside_down_is_no_swap_of_columns_in_one_unit() -> None:
     """With both columns in rad, swapped columns would move alike, too."""
     log = joint_log(KNEE, 1e-3)
     columns = {**knee_log(), "motor_rad": GEAR * log["theta"], "link_rad": log["q"]}
     text = RIGHT.replace('"motor_counts"\nunit = "counts"\ncounts_per_turn = 4096', '"motor_rad"')
     text = text.replace("gear_ratio = 100\nzero = 1500", "gear_ratio = 0.01")
     text = text.replace('"link_deg"\nunit = "deg"', '"link_rad"')
-    first = wrong(columns, text, tmp_path)[0]
+    first = wrong(columns, text)[0]
     assert (first.key, first.proposed) == ("ports.theta.gear_ratio", 100.0)
 
 
-def test_columns_that_are_swapped_are_said_as_that(tmp_path: Path) -> None:
+def test_columns_that_are_swapped_are_said_as_that() -> None:
     text = RIGHT.replace("motor_counts", "X").replace("link_deg", "motor_counts")
-    (found,) = wrong(knee_log(), text.replace("X", "link_deg"), tmp_path)
+    (found,) = wrong(knee_log(), text.replace("X", "link_deg"))
     assert (found.key, found.proposed) == ("ports.theta.column", "motor_counts")
     assert "swapped" in sentence(found)
 
 
-def test_what_identify_will_set_is_no_finding_before_it(tmp_path: Path) -> None:
+def test_what_identify_will_set_is_no_finding_before_it() -> None:
     text = RIGHT.replace("range.phi = 0.03\n", "").replace("prior.tau_e = 20\n", "")
     text = text.replace("B = 1.05e-4", "B = 2.3e-5").replace("prior.B = 0.1", "prior.B = 1000")
     strong = {**KNEE, "spring.k_1": 2e4, "motor.gamma": GEAR, "motor.B": 2e-3}
     for plant in (KNEE, strong):
         columns = as_recorded(joint_log(plant, 1e-3, 400.0))
-        assert wrong(columns, text, tmp_path) == []
+        assert wrong(columns, text) == []
 
 
 @pytest.mark.parametrize(
@@ -145,19 +138,18 @@ def test_what_identify_will_set_is_no_finding_before_it(tmp_path: Path) -> None:
         (["motor_counts"], "the motor does not move while the link does"),
     ],
 )
-def test_positions_that_do_not_change(still: list[str], words: str, tmp_path: Path) -> None:
+def test_positions_that_do_not_change(still: list[str], words: str) -> None:
     log = {name: np.full_like(c, c[0]) if name in still else c for name, c in knee_log().items()}
-    (found,) = wrong(log, RIGHT, tmp_path)
+    (found,) = wrong(log, RIGHT)
     assert words in sentence(found)
 
 
-def test_a_link_that_is_locked_on_purpose_needs_no_column(tmp_path: Path) -> None:
+def test_a_link_that_is_locked_on_purpose_needs_no_column() -> None:
     plant = {**KNEE, "contact.k": 1e7, "contact.d": 1e3}
     log = {name: x for name, x in joint_log(plant, 1e-3).items() if name != "q"}
     text = parameters(KNEE, 1e-3).replace('ports.q.column = "q"', "ports.q.value = 0")
-    assert wrong(log, text, tmp_path) == []
-    recorded = LogInMemory(Path("log"), log)
-    branch = estimate(recorded, read_configuration(tmp_path / "log.toml")).curve.branches[0]
+    assert wrong(log, text) == []
+    branch = estimate(LogInMemory(Path("log"), log), in_memory(text)).curve.branches[0]
     _, _, interval = stiffness_in_the_middle(branch)
     assert interval is not None
     low, high = interval
@@ -195,79 +187,78 @@ GOOD = {
 
 
 @pytest.mark.parametrize("name", GOOD)
-def test_no_false_alarm(name: str, tmp_path: Path) -> None:
+def test_no_false_alarm(name: str) -> None:
     changed, T, load = GOOD[name]
     plant = {**KNEE, **changed}
-    assert wrong(joint_log(plant, T, load), parameters(plant, T), tmp_path) == []
+    assert wrong(joint_log(plant, T, load), parameters(plant, T)) == []
 
 
-def test_no_false_alarm_with_a_set_point(tmp_path: Path) -> None:
+def test_no_false_alarm_with_a_set_point() -> None:
     text = CONFIGURATION + 'method = "FilteredRegression"\n'
-    assert wrong(awas_log(1.0, 0.3), text, tmp_path) == []
+    assert wrong(awas_log(1.0, 0.3), text) == []
 
 
-def test_a_wrong_sign_of_theta_and_torque_is_that_of_the_link(tmp_path: Path) -> None:
+def test_a_wrong_sign_of_theta_and_torque_is_that_of_the_link() -> None:
     text = parameters(KNEE, 1e-3)
     for name in ("theta", "tau"):
         text = f"ports.{name}.sign = -1\n{text}"
-    (found,) = wrong(joint_log(KNEE, 1e-3), text, tmp_path)
+    (found,) = wrong(joint_log(KNEE, 1e-3), text)
     assert (found.key, found.proposed) == ("ports.q.sign", -1.0)
 
 
-def test_a_counter_that_wraps_is_named_with_its_period(tmp_path: Path) -> None:
+def test_a_counter_that_wraps_is_named_with_its_period() -> None:
     wrapped = {**knee_log(), "motor_counts": np.mod(knee_log()["motor_counts"], 4096)}
-    (found,) = wrong(wrapped, RIGHT, tmp_path)
+    (found,) = wrong(wrapped, RIGHT)
     assert (found.kind, found.key) == (Kind.JUMP, "ports.theta.wrap")
     assert found.proposed == 4096
 
 
-def test_single_samples_that_were_lost_are_counted(tmp_path: Path) -> None:
+def test_single_samples_that_were_lost_are_counted() -> None:
     link = np.array(knee_log()["link_deg"])
     link[1000:12_000:1000] += 90.0
-    (found,) = wrong({**knee_log(), "link_deg": link}, RIGHT, tmp_path)
+    (found,) = wrong({**knee_log(), "link_deg": link}, RIGHT)
     assert (found.kind, found.key, found.expected) == (Kind.SPIKE, "ports.q.column", 11)
     assert found.measured == pytest.approx(90.0, abs=1.0)
 
 
-def test_the_unit_of_both_positions_shows_in_the_steps_of_the_encoders(tmp_path: Path) -> None:
+def test_the_unit_of_both_positions_shows_in_the_steps_of_the_encoders() -> None:
     text = parameters(KNEE, 1e-3)
     for name in ("theta", "q"):
         text = f'ports.{name}.unit = "deg"\n{text}'
-    found = checked(joint_log(KNEE, 1e-3), text, tmp_path).findings
+    found = checked(joint_log(KNEE, 1e-3), text).findings
     keys = {each.key: each.proposed for each in found if each.kind is Kind.STEP}
     assert keys == {"ports.theta.unit": "rad", "ports.q.unit": "rad"}
 
 
-def test_a_torque_behind_the_gear_shows_in_the_inertia(tmp_path: Path) -> None:
+def test_a_torque_behind_the_gear_shows_in_the_inertia() -> None:
     log = joint_log(KNEE, 1e-3)
-    (found,) = wrong({**log, "tau": GEAR * log["tau"]}, parameters(KNEE, 1e-3), tmp_path)
+    (found,) = wrong({**log, "tau": GEAR * log["tau"]}, parameters(KNEE, 1e-3))
     assert (found.key, found.proposed) == ("ports.tau.gear_ratio", GEAR)
 
 
-def test_what_no_log_shows_is_listed(tmp_path: Path) -> None:
+def test_what_no_log_shows_is_listed() -> None:
     text = RIGHT.replace("motor.B = 1.05e-4\n", "")
-    found = [sentence(each) for each in checked(knee_log(), text, tmp_path).of(Severity.RESTS_ON)]
+    found = [sentence(each) for each in checked(knee_log(), text).of(Severity.RESTS_ON)]
     assert "motor.B: 2.3e-05 is the start value, of another robot" in found
     assert any(each.startswith("ports.theta.unit: theta in counts and q in deg;") for each in found)
 
 
-def test_a_torque_that_saturates_is_noted(tmp_path: Path) -> None:
+def test_a_torque_that_saturates_is_noted() -> None:
     log = joint_log(KNEE, 1e-3)
     limit = 0.8 * sum(A for A, *_ in SINES)
     flat = {**log, "tau": np.clip(log["tau"], -limit, limit)}
-    found = checked(flat, parameters(KNEE, 1e-3), tmp_path)
+    found = checked(flat, parameters(KNEE, 1e-3))
     assert Kind.SATURATION in [each.kind for each in found.findings]
 
 
-def test_a_torque_that_is_only_noise_is_noted(tmp_path: Path) -> None:
+def test_a_torque_that_is_only_noise_is_noted() -> None:
     for hold, noted in ((0.0, True), (0.05, False)):
-        found = checked(log_by_hand(hold), RIGHT, tmp_path)
+        found = checked(log_by_hand(hold), RIGHT)
         assert (Kind.NO_TORQUE in [each.kind for each in found.findings]) is noted
 
 
 def test_the_command(shell: Shell) -> None:
-    write_log({name: column[:8000] for name, column in knee_log().items()}, Path("knee.csv"))
-    Path("knee.toml").write_text(RIGHT)
+    write_log({name: column[:8000] for name, column in knee_log().items()}, Path("knee.csv"), RIGHT)
     assert "nothing" in shell.run("check knee.csv")
     Path("wrong.toml").write_text(RIGHT.replace("= 4096", "= 16384"))
     result = shell.json("check knee.csv --config wrong.toml", 1)

@@ -9,13 +9,12 @@ import tomlkit
 
 import sigmahat
 from command_line import Shell
-from recorded_logs import write_log
+from recorded_logs import in_memory, write_log
 from sigmahat.files import toml_file
 from sigmahat.fmi.instance import Fmu
 from sigmahat.guessing.columns import read_columns
 from sigmahat.guessing.guess import guess
 from sigmahat.guessing.template import write
-from sigmahat.logs.configuration import read_configuration
 from sigmahat.logs.joints import of_joint
 from sigmahat.logs.log import LogInMemory
 from sigmahat.logs.replay import parameters
@@ -86,8 +85,7 @@ def test_what_it_asks_for_must_be_filled_in(shell: Shell) -> None:
 
 
 def test_a_file_is_not_overwritten(shell: Shell) -> None:
-    write_log(LOG, Path("log.csv"))
-    Path("log.toml").write_text("mine")
+    write_log(LOG, Path("log.csv"), "mine")
     assert "--force" in shell.refused("init log.csv")
     shell.run("init log.csv --force")
 
@@ -157,13 +155,11 @@ def test_a_motor_never_goes_with_the_link_of_another_joint(shell: Shell) -> None
     assert (knee["theta"], knee["q"]) == ("FILL IN", "knee_link_pos_rad")
 
 
-def test_the_gear_ratio_of_theta_is_that_of_the_motor(tmp_path: Path) -> None:
-    text = '[ports.theta]\ncolumn = "a"\ngear_ratio = -70\n[ports.q]\ncolumn = "b"\n'
-    path = tmp_path / "log.toml"
+def test_the_gear_ratio_of_theta_is_that_of_the_motor() -> None:
+    text = 'ports = {theta = {column = "a", gear_ratio = -70}, q = {column = "b"}}\n[parameters]\n'
     with Fmu(sigmahat.fmu("StiffnessEstimator")) as fmu:
         for given, gamma in (("", 70), ("motor.gamma = 0", 70), ("motor.gamma = 35", 35)):
-            path.write_text(f"{text}[parameters]\n{given}\n")
-            assert parameters(fmu, read_configuration(path))["motor.gamma"] == gamma
+            assert parameters(fmu, in_memory(f"{text}{given}\n"))["motor.gamma"] == gamma
 
 
 @pytest.mark.parametrize(

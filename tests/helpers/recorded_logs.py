@@ -10,9 +10,11 @@ import pyarrow as pa
 import pyarrow.csv
 import pyarrow.parquet
 import scipy.io
+import tomlkit
 from numpy.typing import NDArray
 
 from plant_runs import run_awas, sinusoids, times
+from sigmahat.logs.configuration import Configuration, checked_configuration
 
 Array = NDArray[np.float64]
 Columns = dict[str, Array]
@@ -57,6 +59,11 @@ def configured(*parameters: str, ports: Sequence[str] = ("theta", "q", "tau")) -
     return "\n".join([*lines, *parameters, ""])
 
 
+def in_memory(configuration: str) -> Configuration:
+    """A configuration that is in no file."""
+    return checked_configuration(tomlkit.parse(configuration), Path("log.toml"))
+
+
 def awas_log(
     f: float,
     amplitude: float,
@@ -82,8 +89,12 @@ def plain_log(rows: int = 2000) -> Columns:
     return {"t": t, "theta": motion, "q": 1.01 * motion, "theta_c": 75 + t, "tau": 0.1 * motion}
 
 
-def write_log(columns: Mapping[str, NDArray[np.generic]], path: Path) -> Path:
-    """Writes a log in the format of the suffix."""
+def write_log(
+    columns: Mapping[str, NDArray[np.generic]], path: Path, configuration: str = ""
+) -> Path:
+    """Writes a log in the format of the suffix; beside it the configuration, if one is given."""
+    if configuration:
+        path.with_suffix(".toml").write_text(configuration)
     if path.suffix == ".csv":
         pa.csv.write_csv(pa.table(dict(columns)), path)
     elif path.suffix == ".parquet":

@@ -23,9 +23,8 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Of an AwAS whose spring is a general polynomial, so that all of it has to be shown."""
     folder = tmp_path_factory.mktemp("knee")
     with working_in(folder):
-        write_log(awas_log(1.0, 0.3, 10.0), Path("knee.parquet"))
         configuration = CONFIGURATION + SETTING + "rls.n = 4\nrls.symmetric = false\n"
-        Path("knee.toml").write_text(configuration)
+        write_log(awas_log(1.0, 0.3, 10.0), Path("knee.parquet"), configuration)
         assert main(["estimate", "knee.parquet", "--out", "out", "--quiet"]) == 0
         for kind in FILES:
             assert main(["export", "out", "--to", kind, "--quiet"]) == 0

@@ -15,15 +15,11 @@ T = 1e-3
 N = 3000
 START = 1_700_000_000_000_000_000
 CONFIGURATION = """
-[time]
-column = "/joint_states.time"
-[ports.theta]
-column = "/joint_states.position[motor]"
-[ports.q]
-column = "/joint_states.position[link]"
-[ports.tau]
-column = "/drive/torque.data"
-time = "/drive/torque.time"
+time.column = "/joint_states.time"
+[ports]
+theta.column = "/joint_states.position[motor]"
+q.column = "/joint_states.position[link]"
+tau = {column = "/drive/torque.data", time = "/drive/torque.time"}
 [parameters]
 samplePeriod = 0.001
 rls.m = 1

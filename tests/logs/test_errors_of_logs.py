@@ -128,8 +128,7 @@ def test_configuration_that_does_not_fit(old: str, new: str, words: str, shell: 
 
 @pytest.mark.parametrize("key", ["range.phi = -1", "rls.n = 99"])
 def test_no_message_names_a_function_of_an_fmu(key: str, shell: Shell) -> None:
-    write_log(plain_log(), Path("log.csv"))
-    Path("log.toml").write_text(f"{CONFIGURATION}{key}\n")
+    write_log(plain_log(), Path("log.csv"), f"{CONFIGURATION}{key}\n")
     line = shell.refused("identify log.csv")
     assert f"error: parameter {key}" in line and "fmi2" not in line
 
@@ -139,6 +138,5 @@ def test_identify_needs_its_ports_and_some_time(shell: Shell) -> None:
     assert "tau_e_sensor" in shell.refused("identify log.csv --torque-constant")
     too_short = "the log is 0.2 s long, expected at least 0.7 s"
     assert too_short in shell.refused("identify log.csv")
-    write_log(plain_log(rows=20_000), Path("log.csv"))
-    Path("log.toml").write_text(CONFIGURATION.replace("= 0.001", "= 1.5"))
+    write_log(plain_log(rows=20_000), Path("log.csv"), CONFIGURATION.replace("= 0.001", "= 1.5"))
     assert "samples 1.5 s apart do not show" in shell.refused("identify log.csv")

@@ -57,8 +57,8 @@ def test_files_that_are_damaged_or_made_up(trial: Trial) -> None:
     assert complaint_of(trial) is None
 
 
-def zeros_in_mat(path: Path) -> None:
-    scipy.io.savemat(path, {"t": np.zeros(20_000_000)}, do_compression=True)
+def mat(values: np.ndarray, path: Path) -> None:
+    scipy.io.savemat(path, {"t": values}, do_compression=True)
 
 
 def kind_in_mat(kind: int, packed: bool, path: Path) -> None:
@@ -71,11 +71,6 @@ def kind_in_mat(kind: int, packed: bool, path: Path) -> None:
         variable = zlib.compress(bytes(content[128:]))
         content[128:] = struct.pack("<II", 15, len(variable)) + variable
     path.write_bytes(content)
-
-
-def many_cells_in_mat(path: Path) -> None:
-    cells = np.array([*range(300_000)], dtype=object)
-    scipy.io.savemat(path, {"t": cells}, do_compression=True)
 
 
 def zeros_in_parquet(path: Path) -> None:
@@ -110,21 +105,13 @@ def virtual(file: h5py.File) -> None:
     file.create_virtual_dataset("a", layout)
 
 
-def text(content: str, path: Path) -> None:
-    path.write_text(content)
-
-
-def device(path: Path) -> None:
-    path.symlink_to("/dev/zero")
-
-
 @pytest.mark.parametrize(
     ("write", "words"),
     [
-        (zeros_in_mat, "20000000 numbers or more in a file of"),
+        (partial(mat, np.zeros(20_000_000)), "20000000 numbers or more in a file of"),
         (partial(kind_in_mat, 39945, False), "damaged MAT file (no element is of the kind 39945)"),
         (partial(kind_in_mat, 8, True), "damaged MAT file (no element is of the kind 8)"),
-        (many_cells_in_mat, "more than 1000000 cells and fields"),
+        (partial(mat, np.arange(300_000).astype(object)), "more than 1000000 cells and fields"),
         (zeros_in_parquet, "16000000 numbers or more in a file of"),
         (partial(hdf5, nothing), "10000000000 numbers or more in a file of"),
         (partial(hdf5, circle), "in a circle"),
@@ -132,16 +119,16 @@ def device(path: Path) -> None:
         (partial(hdf5, bytes_of_another_file), "'a' lies in another file, '/etc/passwd'"),
         (partial(hdf5, virtual), "'a' lies in another file, 'other.h5'"),
         (
-            partial(text, ",".join(f"c{i}" for i in range(100_000)) + "\n1\n"),
+            partial(Path.write_text, data=",".join(f"c{i}" for i in range(100_000)) + "\n1\n"),
             "100000 columns, expected at most 2000",
         ),
-        (partial(text, "t,q\n" + "1" * 10_000_000), "line 2 is longer than"),
+        (partial(Path.write_text, data="t,q\n" + "1" * 10_000_000), "line 2 is longer than"),
         (os.mkfifo, "expected a file, got a pipe or a device"),
-        (device, "expected a file, got a pipe or a device"),
+        (partial(Path.symlink_to, target="/dev/zero"), "expected a file, got a pipe or a device"),
     ],
 )
 def test_a_log_that_is_more_than_it_seems(
-    write: Callable[[Path], None], words: str, run: Run
+    write: Callable[[Path], object], words: str, run: Run
 ) -> None:
     write(Path("log"))
     for command in ("init log --config new.toml", "check log"):
@@ -163,9 +150,8 @@ def test_a_parquet_file_with_a_damaged_description(value: int, run: Run) -> None
 
 def test_a_log_of_which_no_tick_can_be_used(run: Run) -> None:
     """GIVEN a scale that makes every value too large, THEN there are results, and all say so."""
-    write_log(plain_log(300), Path("log.csv"))
-    too_large = 'column = "theta_c"\nscale = 1e300'
-    Path("log.toml").write_text(CONFIGURATION.replace('column = "theta_c"', too_large))
+    too_large = CONFIGURATION.replace('"theta_c"', '"theta_c"\nscale = 1e300')
+    write_log(plain_log(300), Path("log.csv"), too_large)
     done = run("estimate log.csv --out results")
     assert done.status == 0 and "300 of 300 ticks skipped" in done.out
 
