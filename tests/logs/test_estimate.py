@@ -8,8 +8,9 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
-from command_line import Shell
+from command_line import Shell, in_process
 from recorded_logs import (
+    COLUMNS,
     CONFIGURATION,
     REGRESSION,
     STORED,
@@ -19,17 +20,10 @@ from recorded_logs import (
     read_estimate,
     write_log,
 )
-from sigmahat.cli import main
 from sigmahat.fmi.master import Recording
 from sigmahat.paper.scenarios import SCENARIOS
 from sigmahat.runs.engine import run
 
-SENSORS = {
-    "theta": "theta_measured",
-    "q": "q_measured",
-    "theta_c": "theta_c_measured",
-    "tau": "tau_measured",
-}
 SIGMA = "estimate.sigma [N.m/rad]"
 AS_IN_THE_FMU = re.sub(r"motor\..*\n", "", CONFIGURATION)
 
@@ -41,7 +35,7 @@ def table1() -> Recording:
 
 @pytest.fixture(scope="module")
 def log(table1: Recording) -> Columns:
-    return {"t": table1.t, **{port: table1.plant[name] for port, name in SENSORS.items()}}
+    return {"t": table1.t, **{port: table1.plant[name] for port, name in COLUMNS.items()}}
 
 
 def estimated(shell: Shell, log: Path, configuration: str = AS_IN_THE_FMU) -> pa.Table:
@@ -90,9 +84,8 @@ def test_a_gap_is_skipped_as_the_estimator_skips_it(log: Columns, shell: Shell) 
     filled = {name: values.copy() for name, values in log.items()}
     filled["q"][lost] = np.nan
     results = []
-    Path("log.toml").write_text(AS_IN_THE_FMU)
     for columns in (holes, filled):
-        write_log(columns, Path("log.parquet"))
+        write_log(columns, Path("log.parquet"), AS_IN_THE_FMU)
         said = shell.run("estimate log.parquet --out out")
         assert "300 ticks skipped in 1 gaps, the longest of 0.3 s at 4 s" in said
         assert shell.err == ""  # no warning of the FMU for each gap
@@ -137,10 +130,9 @@ def test_slow_and_uneven_columns_are_interpolated(log: Columns, shell: Shell) ->
     # GIVEN theta_c every 10 ms, empty in between, and time stamps of the rows that jitter
     rng = np.random.default_rng(1)
     t = log["t"] + rng.uniform(-2e-4, 2e-4, len(log["t"]))
-    columns = {name: np.interp(t, log["t"], log[name]) for name in SENSORS}
+    columns = {name: np.interp(t, log["t"], log[name]) for name in COLUMNS}
     columns["theta_c"][np.arange(len(t)) % 10 != 0] = np.nan
-    write_log({"t": t, **columns}, Path("log.parquet"))
-    Path("log.toml").write_text(AS_IN_THE_FMU + "encoder.theta = 0\n")
+    write_log({"t": t, **columns}, Path("log.parquet"), AS_IN_THE_FMU + "encoder.theta = 0\n")
     output = shell.run("estimate log.parquet --out out")
     assert re.search(r"theta_c: 1\d{4} ticks interpolated, its samples are 0.01 s apart", output)
     assert re.search(r"theta: 1\d{4} ticks interpolated", output)
@@ -152,9 +144,7 @@ def test_slow_and_uneven_columns_are_interpolated(log: Columns, shell: Shell) ->
 def test_columns_with_times_of_their_own(log: Columns, shell: Shell) -> None:
     # GIVEN data sets of several lengths THEN ticks at their common samples are exact
     columns = {**log, "slow_t": log["t"][::10], "theta_c": log["theta_c"][::10]}
-    configuration = AS_IN_THE_FMU.replace(
-        'column = "theta_c"', 'column = "theta_c"\ntime = "slow_t"'
-    )
+    configuration = AS_IN_THE_FMU.replace('"theta_c"', '"theta_c"\ntime = "slow_t"')
     table = estimated(shell, write_log(columns, Path("log.h5")), configuration)
     assert "theta_c" not in table.column_names  # it is no column of the table of t
     found = table["estimate.setPoint [1]"].to_numpy()[::10]
@@ -178,16 +168,15 @@ def test_filters_are_not_faster_than_the_samples(
     period: float, rate: float | None, log: Columns, shell: Shell
 ) -> None:
     every = round(period / 0.001)
-    write_log({name: values[::every] for name, values in log.items()}, Path("log.parquet"))
-    Path("log.toml").write_text(REGRESSION.replace("= 0.001", f"= {period}"))
+    columns = {name: values[::every] for name, values in log.items()}
+    write_log(columns, Path("log.parquet"), REGRESSION.replace("= 0.001", f"= {period}"))
     used = shell.json("estimate log.parquet")["parameters"]
     assert used["regression.bandwidth"] == (rate or 350.0)
     assert used["residual.K_I"] == (rate or 300.0)
 
 
 def test_json_and_quiet(log: Columns, shell: Shell) -> None:
-    write_log(log, Path("log.parquet"))
-    Path("log.toml").write_text(AS_IN_THE_FMU)
+    write_log(log, Path("log.parquet"), AS_IN_THE_FMU)
     summary = shell.json("estimate log.parquet --out out")
     last = read_estimate(Path("out"))
     assert last[SIGMA].to_numpy()[-1] == pytest.approx(summary["sigma [N.m/rad]"], rel=STORED)
@@ -203,9 +192,8 @@ def test_json_and_quiet(log: Columns, shell: Shell) -> None:
 
 def test_why_and_how_often_the_estimate_is_not_confident(shell: Shell) -> None:
     # GIVEN a limit that only part of the estimates meets
-    write_log(awas_log(1.0, 0.3), Path("log.parquet"))
     limits = "limit.relative_std = 0.022\nprior.torque_gain = 0.01\n"
-    Path("log.toml").write_text(REGRESSION + limits)
+    write_log(awas_log(1.0, 0.3), Path("log.parquet"), REGRESSION + limits)
     result = shell.json("estimate log.parquet --out out")
     table = read_estimate(Path("out"))
     doubt = np.array(table["estimate.doubt"].to_pylist())
@@ -215,9 +203,8 @@ def test_why_and_how_often_the_estimate_is_not_confident(shell: Shell) -> None:
     half = len(doubt) // 2
     assert 0 < result["confident"] < 1
     assert result["confident"] == np.mean(confident[half:])
-    assert result["doubt"] == {
-        item: np.mean(doubt[half:] == item) for item in set(doubt[half:]) - {"None"}
-    }
+    items = {*doubt[half:]} - {"None"}
+    assert result["doubt"] == {item: np.mean(doubt[half:] == item) for item in items}
     # THEN what it rests on is that of the FMU, and the summary says it
     for name in ("misfit", "sigma_per_gain"):
         stored = table[f"estimate.{name} [1]"].to_numpy()[-1]
@@ -233,19 +220,15 @@ def test_why_and_how_often_the_estimate_is_not_confident(shell: Shell) -> None:
         assert line in text
 
 
-def test_paper2011_makes_no_claim_and_has_no_band_in_the_figure(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    write_log(plain_log(), Path("log.csv"))
+def test_paper2011_makes_no_claim_and_has_no_band_in_the_figure(tmp_path: Path) -> None:
     for method, claims in (("Paper2011", False), ("FilteredRegression", True)):
-        Path("log.toml").write_text(f'{AS_IN_THE_FMU}method = "{method}"\n')
-        assert main(["estimate", "log.csv", "--out", method]) == 0
-        assert ("95 % band" in Path(method, "estimate.svg").read_text()) == claims
-        assert Path(method, "estimate.png").stat().st_size > 0
-        text = capsys.readouterr().out
+        write_log(plain_log(), tmp_path / "log.csv", f'{AS_IN_THE_FMU}method = "{method}"\n')
+        done = in_process("estimate", "log.csv", "--out", method, cwd=tmp_path)
+        assert done.returncode == 0
+        assert ("95 % band" in (tmp_path / method / "estimate.svg").read_text()) == claims
+        assert (tmp_path / method / "estimate.png").stat().st_size > 0
         if not claims:
-            assert "for which the method gives no standard deviation" in text
-            assert text.count("standard deviation") == 1 and "confident" not in text
-            doubt = read_estimate(Path(method))["estimate.doubt"]
+            assert "for which the method gives no standard deviation" in done.stdout
+            assert done.stdout.count("standard deviation") == 1 and "confident" not in done.stdout
+            doubt = read_estimate(tmp_path / method)["estimate.doubt"]
             assert set(doubt.to_pylist()) == {"NoClaim"}

@@ -18,9 +18,7 @@ from sigmahat.files.output import sha256
 
 HALF = 2000
 SIGMA = "estimate.sigma [N.m/rad]"
-SENSOR = REGRESSION.replace(
-    "[parameters]", '[ports.tau_e_sensor]\ncolumn = "tau_e_sensor"\n[parameters]'
-)
+SENSOR = f'ports.tau_e_sensor.column = "tau_e_sensor"\n{REGRESSION}modality = "Sensor"\n'
 SECOND = "estimate second.parquet --config joint.toml --out second"
 
 
@@ -67,7 +65,7 @@ def learned(original: Path, shell: Shell) -> Shell:
 @pytest.mark.usefixtures("shell")
 @pytest.mark.parametrize(
     ("configuration", "ticks"),
-    [(REGRESSION, 1), (CONFIGURATION, 7), (SENSOR + 'modality = "Sensor"\n', 1)],
+    [(REGRESSION, 1), (CONFIGURATION, 7), (SENSOR, 1)],
     ids=["FilteredRegression", "Paper2011", "Sensor"],
 )
 def test_two_logs_are_one_log_with_a_gap(configuration: str, ticks: int, log: Columns) -> None:
@@ -148,15 +146,12 @@ def change(**values: Any) -> Callable[[State], bytes]:
     return lambda state: json.dumps(state | values).encode()
 
 
-def damage(state: State) -> bytes:
-    block = bytearray(base64.b64decode(state["state"]))
-    block[5000] ^= 1
-    return change(state=base64.b64encode(block).decode())(state)
+def with_bytes(changed: Callable[[bytes], bytes]) -> Callable[[State], bytes]:
+    def content(state: State) -> bytes:
+        block = changed(base64.b64decode(state["state"]))
+        return change(state=base64.b64encode(block).decode())(state)
 
-
-def cut(state: State) -> bytes:
-    block = base64.b64decode(state["state"])[:-8]
-    return change(state=base64.b64encode(block).decode())(state)
+    return content
 
 
 @pytest.mark.parametrize(
@@ -169,8 +164,11 @@ def cut(state: State) -> bytes:
         (change(state=""), "truncated"),
         (change(logs=None), "damaged: logs"),
         (change(mine=1), "damaged: mine"),
-        (damage, "checksum does not match"),
-        (cut, "truncated"),
+        (
+            with_bytes(lambda b: b[:5000] + bytes([b[5000] ^ 1]) + b[5001:]),
+            "checksum does not match",
+        ),
+        (with_bytes(lambda b: b[:-8]), "truncated"),
         (lambda _: b"", "got no JSON"),
         (lambda _: b"\xff\xfe", "not text"),
         (lambda _: b"[1, 2]", "got something else"),

@@ -11,11 +11,10 @@ import pytest
 
 from browser import DATA, ROWS, Page, opened
 from command_line import Shell, working_in
-from recorded_logs import CONFIGURATION, awas_log, write_log
+from recorded_logs import REGRESSION, awas_log, write_log
 from sigmahat.joint.curve import CURVE
 from sigmahat.plotting.style import limits
 
-REGRESSION = CONFIGURATION + 'method = "FilteredRegression"\nprior.B = 0.2\nrls.n = 3\n'
 GAP = slice(20_000, 20_200)
 SPIKE = 5.0
 
@@ -29,8 +28,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     log["tau"][40_000] = np.nan
     columns = {name: np.delete(values, GAP) for name, values in log.items()}
     with working_in(folder):
-        write_log(columns, Path("knee.parquet"))
-        Path("knee.toml").write_text(REGRESSION)
+        write_log(columns, Path("knee.parquet"), REGRESSION + "prior.B = 0.2\n")
         answer = Shell().run("estimate knee.parquet --out out --json")
         Path("answer.json").write_text(answer)
         notes = json.loads(Path("out/estimate.json").read_text())
@@ -52,12 +50,9 @@ def test_the_band_is_that_of_the_file(folder: Path, page: Page) -> None:
     for plot, name in enumerate(("tau_e [N.m]", "sigma [N.m/rad]")):
         quantity, unit = name.split(" ")
         trace = f"trace-{plot}-0"
-        for key, column in (
-            (trace, name),
-            (f"{trace}-low", f"{quantity} low {unit}"),
-            (f"{trace}-high", f"{quantity} high {unit}"),
-        ):
-            drawn = np.array(page.run(DATA, trace, key))
+        for end in ("", "low", "high"):
+            drawn = page.run(DATA, trace, f"{trace}-{end}".removesuffix("-"))
+            column = f"{quantity} {end} {unit}" if end else name
             assert np.array_equal(drawn, table[column].to_numpy()[first])
 
 

@@ -21,13 +21,12 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder in which a first log was learned from, with three others."""
     folder = tmp_path_factory.mktemp("validate")
     with working_in(folder):
-        write_log(awas_log(1.0, 0.3, DURATION), Path("knee.parquet"))
+        write_log(awas_log(1.0, 0.3, DURATION), Path("knee.parquet"), KNEE)
         write_log(awas_log(1.3, 0.3, DURATION, seed=2), Path("same.parquet"))
         write_log(awas_log(1.3, 0.3, DURATION, seed=2, plant=SOFT), Path("softer.parquet"))
         at_rest = awas_log(1.0, 0.3, 3.0, seed=3)
         still = {name: np.full_like(values, values[0]) for name, values in at_rest.items()}
         write_log({**still, "t": at_rest["t"]}, Path("still.parquet"))
-        Path("knee.toml").write_text(KNEE)
         assert main(["estimate", "knee.parquet", "--quiet"]) == 0
     return folder
 
@@ -117,11 +116,8 @@ def test_wrong_arguments(arguments: str, words: str, knee: Shell) -> None:
 
 
 def estimates(sigma: float, std: float, per_gain: float = 1.0) -> dict[str, Array]:
-    return {
-        "sigma": np.full(4, sigma),
-        "sigma_std": np.full(4, std),
-        "sigma_per_gain": np.full(4, per_gain),
-    }
+    values = {"sigma": sigma, "sigma_std": std, "sigma_per_gain": per_gain}
+    return {name: np.full(4, value) for name, value in values.items()}
 
 
 def test_agreement_in_figures() -> None:
