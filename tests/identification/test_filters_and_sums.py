@@ -1,15 +1,12 @@
 """What identify computes without rows of equations, and without scipy.signal, against both."""
 
-import subprocess
-import sys
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.signal import butter, coherence, sosfiltfilt, welch
 
-from recorded_logs import CONFIGURATION, Array, awas_log, write_log
+from recorded_logs import Array
 from sigmahat.identification.coherence import spectra
 from sigmahat.identification.identify import _apart
 from sigmahat.identification.noise import low_pass
@@ -90,18 +87,6 @@ def test_a_known_coefficient_and_parts_that_are_left_out() -> None:
     eighths = system.in_parts(8)
     assert eighths.rows.sum() == system.rows.sum()
     assert fit(system).squares.sum() / system.rows.sum() < left_out(eighths).mean()
-
-
-def test_a_check_imports_what_it_uses(tmp_path: Path) -> None:
-    write_log(awas_log(1.0, 0.3, 5.0), tmp_path / "log.parquet")
-    (tmp_path / "log.toml").write_text(CONFIGURATION)
-    program = (
-        "import sys; from sigmahat.cli import main; main(['check', 'log.parquet', '--quiet']);"
-        "print({'pandas', 'scipy.signal', 'scipy.stats', 'matplotlib', 'bokeh'} & {*sys.modules})"
-    )
-    command = [sys.executable, "-c", program]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True)
-    assert done.stdout == "set()\n"
 
 
 # ---- a motor that moves less than a count per sample: rounding is not independent ----------------

@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,8 +13,17 @@ import tomlkit
 import sigmahat
 from checked_logs import RIGHT, log_by_hand
 from command_line import Shell
-from recorded_logs import CONFIGURATION, LEAD, TRUE, Columns, awas_log, read_estimate, write_log
-from recorded_logs import configured as configured_as
+from recorded_logs import (
+    CONFIGURATION,
+    LEAD,
+    TRUE,
+    Columns,
+    awas_log,
+    configured,
+    in_memory,
+    read_estimate,
+    write_log,
+)
 from regression_joint import Joint
 from sigmahat.fmi.instance import Fmu
 from sigmahat.identification.identify import identify
@@ -29,21 +38,19 @@ AMPLITUDES = {0.1: 0.3, 0.3: 0.3, 1.0: 0.3, 3.0: 0.3, 8.0: 0.5}  # [Hz]: [N.m]
 
 
 @pytest.fixture(scope="module")
-def configured(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A configuration that nobody changes."""
-    path = tmp_path_factory.mktemp("identify") / "log.toml"
-    path.write_text(CONFIGURATION)
-    return path
-
-
-@pytest.fixture(scope="module")
-def found(configured: Path) -> Found:
+def found() -> Found:
     """By frequency, from start values that are wrong by 20 %."""
-    return {f: identified(awas_log(f, A), configured) for f, A in AMPLITUDES.items()}
+    return {f: identified(awas_log(f, A)) for f, A in AMPLITUDES.items()}
 
 
-def identified(log: Columns, configuration: Path) -> Identified:
-    return identify(LogInMemory(Path("log"), log), read_configuration(configuration))
+def identified(log: Mapping[str, Array], configuration: str = CONFIGURATION) -> Identified:
+    return identify(LogInMemory(Path("log"), log), in_memory(configuration))
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    """Of a configuration."""
+    return tmp_path / "log.toml"
 
 
 @pytest.mark.slow("logs are simulated and identified")
@@ -70,13 +77,13 @@ def test_slow_motion_does_not_determine_the_inertia(found: Found) -> None:
 
 
 @pytest.mark.slow("eight logs of 8 s, each simulated and identified")
-def test_intervals_cover_the_truth(configured: Path) -> None:
+def test_intervals_cover_the_truth() -> None:
     # GIVEN other noise THEN 95 % hold the true value: of 24, more than 3 miss it once in 30 times
     misses = [
         (f, seed, name)
         for f in (0.3, 3.0)
         for seed in range(2, 6)
-        for name, quantity in identified(awas_log(f, 0.3, 8.0, seed), configured).quantities.items()
+        for name, quantity in identified(awas_log(f, 0.3, 8.0, seed)).quantities.items()
         if abs(quantity.value - {**TRUE, "zero": 0.0}[name]) > quantity.half_width
     ]
     assert len(misses) <= 3
@@ -88,17 +95,16 @@ def test_the_old_name_of_determined(found: Found) -> None:
         assert quantity.told == quantity.determined
 
 
-def test_a_joint_at_rest_determines_nothing(configured: Path) -> None:
+def test_a_joint_at_rest_determines_nothing() -> None:
     rng = np.random.default_rng(1)
     t = 1e-3 * np.arange(5000)
     rest = {"t": t, **{name: np.full(5000, 0.5) for name in ("theta", "q", "theta_c")}}
-    quantities = identified({**rest, "tau": rng.normal(0, 3e-3, 5000)}, configured).quantities
+    quantities = identified({**rest, "tau": rng.normal(0, 3e-3, 5000)}).quantities
     assert not any(quantity.determined for quantity in quantities.values())
 
 
 def test_command_writes_what_is_determined_and_keeps_the_comments(shell: Shell) -> None:
-    write_log(awas_log(0.1, 0.3), Path("log.csv"))
-    Path("log.toml").write_text(CONFIGURATION)
+    write_log(awas_log(0.1, 0.3), Path("log.csv"), CONFIGURATION)
     result = shell.json("identify log.csv --dry-run")
     assert result["B"]["value"] is None and result["written"] == []
     assert Path("log.toml").read_text() == CONFIGURATION
@@ -128,8 +134,7 @@ def test_command_writes_what_is_determined_and_keeps_the_comments(shell: Shell) 
         "[parameters]\nmotor = {B = 1.0} # mine",
     ],
 )
-def test_values_are_written_where_they_stand(parameters: str, found: Found, tmp_path: Path) -> None:
-    path = tmp_path / "log.toml"
+def test_values_are_written_where_they_stand(parameters: str, found: Found, path: Path) -> None:
     path.write_text(f'[ports.q]\ncolumn = "q"\n{parameters}\n')
     written = write(found[1.0], path)
     read = read_configuration(path).parameters
@@ -163,9 +168,8 @@ def cannot_tell(found: Identified) -> Identified:
     ],
 )
 def test_what_is_not_determined_is_never_exact(
-    parameters: str, kept: dict[str, float], found: Found, tmp_path: Path
+    parameters: str, kept: dict[str, float], found: Found, path: Path
 ) -> None:
-    path = tmp_path / "log.toml"
     path.write_text(f'[ports.q]\ncolumn = "q"\n{parameters}\n')
     for _ in range(2):  # a second run finds what the first one wrote
         written = write(cannot_tell(found[1.0]), path)
@@ -195,8 +199,8 @@ def test_what_is_not_determined_is_never_exact(
         assert "not known" not in path.read_text()
 
 
-def test_ranges_hold_what_the_log_shows(found: Found, tmp_path: Path) -> None:
-    log, path = awas_log(1.0, 0.3), tmp_path / "log.toml"
+def test_ranges_hold_what_the_log_shows(found: Found, path: Path) -> None:
+    log = awas_log(1.0, 0.3)
     path.write_text(CONFIGURATION)
     write(found[1.0], path)
     read = read_configuration(path).parameters
@@ -209,16 +213,12 @@ def test_ranges_hold_what_the_log_shows(found: Found, tmp_path: Path) -> None:
         assert largest <= float(read[name]) <= 1.5 * largest
 
 
-def test_a_motor_that_is_off_shows_nothing_of_itself(tmp_path: Path) -> None:
+def test_a_motor_that_is_off_shows_nothing_of_itself() -> None:
     """GIVEN a link that a hand moves while the motor has no torque, THEN no 0 is written for it."""
-    path = tmp_path / "log.toml"
-    path.write_text(RIGHT)
-    log = LogInMemory(Path("log"), log_by_hand(0.0))
-    found = identify(log, read_configuration(path))
+    found, with_torque = (identified(log_by_hand(hold), RIGHT) for hold in (0.0, 0.05))
     assert not any(each.determined for each in found.quantities.values())
     assert "only noise" in found.notes[-1]
     assert found.torque == 0
-    with_torque = identify(LogInMemory(Path("log"), log_by_hand(0.05)), read_configuration(path))
     assert with_torque.torque > 0 and len(with_torque.notes) == len(found.notes) - 1
 
 
@@ -226,8 +226,7 @@ def test_a_motor_that_is_off_shows_nothing_of_itself(tmp_path: Path) -> None:
 def test_filtered_regression_with_what_was_identified(f: float, shell: Shell) -> None:
     # GIVEN motor data wrong by 20 %, and friction that is in no configuration
     log = awas_log(f, AMPLITUDES[f])
-    write_log(log, Path("log.parquet"))
-    Path("log.toml").write_text(CONFIGURATION + 'method = "FilteredRegression"\n')
+    write_log(log, Path("log.parquet"), CONFIGURATION + 'method = "FilteredRegression"\n')
     shell.run("identify log.parquet")
     summary = shell.json("estimate log.parquet --out out")
     later = slice(len(log["t"]) // 2, None)
@@ -247,10 +246,9 @@ def test_torque_constant(shell: Shell) -> None:
     # GIVEN a current, a torque constant wrong by 20 %, and a sensor
     log = awas_log(1.0, 0.3)
     write_log({**log, "tau": log["tau"] / 0.05}, Path("log.parquet"))
-    sensor = '[ports.tau_e_sensor]\ncolumn = "tau_e_sensor"\n[parameters]'
-    text = CONFIGURATION.replace("[parameters]", sensor)
-    current = '"tau"\nunit = "A"\ntorque_constant = 0.06'
-    Path("log.toml").write_text(text.replace('"tau"', current, 1))
+    text = f'ports.tau_e_sensor.column = "tau_e_sensor"\n{CONFIGURATION}'
+    current = 'column = "tau"\nunit = "A"\ntorque_constant = 0.06'
+    Path("log.toml").write_text(text.replace('column = "tau"', current))
     assert shell.run("identify log.parquet --torque-constant --quiet") == ""
     document = tomlkit.parse(Path("log.toml").read_text()).unwrap()
     assert document["ports"]["tau"]["torque_constant"] == pytest.approx(0.05, rel=0.05)
@@ -258,12 +256,12 @@ def test_torque_constant(shell: Shell) -> None:
     assert document["parameters"]["motor"]["D_theta"] == pytest.approx(TRUE["D_theta"], rel=0.05)
 
 
-def test_gaps_do_not_disturb(configured: Path) -> None:
+def test_gaps_do_not_disturb() -> None:
     log = awas_log(3.0, 0.3)
     kept = np.ones(len(log["t"]), dtype=bool)
     kept[[*range(3000, 3100), 7000, 7001]] = False
     cut = {name: column[kept] for name, column in log.items()}
-    quantities = identified(cut, configured).quantities
+    quantities = identified(cut).quantities
     for name, true in TRUE.items():
         assert quantities[name].value == pytest.approx(true, rel=0.05)
 
@@ -287,10 +285,9 @@ def test_without_noise_and_rounding_the_equations_hold() -> None:
     assert result.value["eta[0,0]"] == pytest.approx(-k * np.max(np.abs(phi)) / gamma, rel=1e-3)
 
 
-def test_a_value_instead_of_one_that_is_not_known_stays(found: Found, tmp_path: Path) -> None:
+def test_a_value_instead_of_one_that_is_not_known_stays(found: Found, path: Path) -> None:
     # GIVEN a file in which identify marked B WHEN somebody changes value and prior, but not the
     # comments, THEN the next run keeps both
-    path = tmp_path / "log.toml"
     path.write_text('[ports.q]\ncolumn = "q"\n')
     write(cannot_tell(found[1.0]), path)
     text = path.read_text()
@@ -322,12 +319,10 @@ def free_load(frequencies: Sequence[float]) -> Columns:
 
 @pytest.mark.parametrize(("frequencies", "shown"), [((1.5,), False), ((1.5, 5.3, 11.0), True)])
 def test_one_sine_of_a_free_load_does_not_tell_its_inertia_from_the_motors(
-    frequencies: Sequence[float], shown: bool, tmp_path: Path
+    frequencies: Sequence[float], shown: bool
 ) -> None:
     encoders = ["encoder.theta = 819200", "encoder.q = 32768", "samplePeriod = 0.002"]
-    path = tmp_path / "log.toml"
-    path.write_text(configured_as("motor.gamma = 50", *encoders))
-    found = identified(free_load(frequencies), path)
+    found = identified(free_load(frequencies), configured("motor.gamma = 50", *encoders))
     assert found.quantities["B"].determined is shown
     assert any("the inertia of the load" in note for note in found.notes) is not shown
     if shown:
@@ -335,9 +330,7 @@ def test_one_sine_of_a_free_load_does_not_tell_its_inertia_from_the_motors(
 
 
 @pytest.mark.parametrize("factor", [1.0, 2.0])
-def test_a_stiffness_that_changes_in_the_log_does_not_look_like_inertia(
-    factor: float, tmp_path: Path
-) -> None:
+def test_a_stiffness_that_changes_in_the_log_does_not_look_like_inertia(factor: float) -> None:
     def stiffness(t: Array) -> Array:
         """Constant in spite of the lever arm of the joint, and then changed."""
         steady: Array = (0.07 / (0.07 + 0.02 * np.sin(0.9 * t))) ** 2
@@ -345,9 +338,7 @@ def test_a_stiffness_that_changes_in_the_log_does_not_look_like_inertia(
 
     joint = Joint(duration=24.0, stiffness=stiffness)
     log = dict(zip(("theta", "q", "theta_c", "tau"), joint.measurements().T, strict=False))
-    path = tmp_path / "log.toml"
-    path.write_text(configured_as("motor.gamma = 50"))
-    found = identified({"t": joint.t, **log}, path)
+    found = identified({"t": joint.t, **log}, configured("motor.gamma = 50"))
     assert found.quantities["B"].value == pytest.approx(TRUE["B"], rel=0.03)
     times = re.findall(r"the stiffness changes after (\S+) s", "".join(found.notes))
     assert [float(t) for t in times] == ([] if factor == 1 else [pytest.approx(12.0, abs=0.3)])

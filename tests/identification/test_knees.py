@@ -16,7 +16,17 @@ FORM = Form(20.0, 50.0, n=4, symmetric=False)
 LARGEST, ZERO = 0.03, 0.004  # of the deformation [rad], of its zero
 
 
-def piece(spring: Callable[[Array], Array], blow: float = 0.0) -> Signals:
+Spring = Callable[[Array], Array]
+FOUND = 0.03 * LARGEST
+"""How near a place has to be [rad]."""
+
+
+def knee(*places: float, ratio: float = 2.0) -> Spring:
+    """A spring whose slope K changes at these deformations by ratio - 1 times K."""
+    return lambda phi: K * (phi + (ratio - 1) * sum(phi - np.clip(phi, -k, k) for k in places))
+
+
+def piece(spring: Spring, blow: float = 0.0) -> Signals:
     """Equation (3) without inertia, solved for the torque, with noise of 1 % of it.
 
     blow  deformation for a moment at the begin, beside that of the motion [rad]
@@ -35,56 +45,37 @@ def piece(spring: Callable[[Array], Array], blow: float = 0.0) -> Signals:
 @pytest.mark.parametrize("ratio", [1.5, 0.5])
 def test_the_knee_of_a_spring_is_found(share: float, ratio: float) -> None:
     k = share * LARGEST
-
-    def spring(phi: Array) -> Array:
-        within: Array = np.clip(phi, -k, k)
-        return K * (within + ratio * (phi - within))
-
-    (found,) = knees([piece(spring)], T, GAMMA, FORM, ZERO)
-    assert found == pytest.approx(k, abs=0.03 * LARGEST)
+    (found,) = knees([piece(knee(k, ratio=ratio))], T, GAMMA, FORM, ZERO)
+    assert found == pytest.approx(k, abs=FOUND)
 
 
 def test_both_knees_of_a_harmonic_drive_are_found() -> None:
     """GIVEN the three slopes K_1, K_2, K_3 of their catalogues."""
     places = (0.25 * LARGEST, 0.6 * LARGEST)
-
-    def spring(phi: Array) -> Array:
-        return K * (phi + sum(phi - np.clip(phi, -k, k) for k in places) / 2)
-
-    found = knees([piece(spring)], T, GAMMA, FORM, ZERO)
-    assert found == pytest.approx(places, abs=0.03 * LARGEST)
+    found = knees([piece(knee(*places, ratio=1.5))], T, GAMMA, FORM, ZERO)
+    assert found == pytest.approx(places, abs=FOUND)
 
 
 def test_a_torque_sensor_does_not_hide_the_knee() -> None:
     """GIVEN a sensor, whose torque takes the place of the polynomial where K_t is identified."""
-
-    def spring(phi: Array) -> Array:
-        return K * (2 * phi - np.clip(phi, -0.4 * LARGEST, 0.4 * LARGEST))
-
+    spring = knee(0.4 * LARGEST)
     plain = piece(spring)
     measured = replace(plain, tau_e=spring(plain.phi - ZERO))
     (found,) = knees([measured], T, GAMMA, FORM, ZERO)
-    assert found == pytest.approx(0.4 * LARGEST, abs=0.03 * LARGEST)
+    assert found == pytest.approx(0.4 * LARGEST, abs=FOUND)
 
 
 def test_a_blow_moves_neither_the_knee_nor_the_scale_of_the_torque() -> None:
     k, blow = 0.3 * LARGEST, 4 * LARGEST
-
-    def spring(phi: Array) -> Array:
-        return K * (2 * phi - np.clip(phi, -k, k))
-
+    spring = knee(k)
     blown = [piece(spring, blow)]
     (found,) = knees(blown, T, GAMMA, FORM, ZERO)
-    assert found == pytest.approx(k, abs=0.03 * LARGEST)
+    assert found == pytest.approx(k, abs=FOUND)
     largest = fit_motor(blown, T, GAMMA, False, 20.0, None).spring
     assert largest == pytest.approx(float(spring(np.array(blow))), rel=0.3)
 
 
-@pytest.mark.parametrize("power", [1, 3])
-def test_a_spring_without_a_knee_has_none(power: int) -> None:
+@pytest.mark.parametrize("spring", [knee(), lambda phi: K * (phi + 0.5 * phi**3 / LARGEST**2)])
+def test_a_spring_without_a_knee_has_none(spring: Spring) -> None:
     """GIVEN a torque that the polynomial of the estimator can make."""
-
-    def spring(phi: Array) -> Array:
-        return K * phi if power == 1 else K * (phi + 0.5 * phi**3 / LARGEST**2)
-
     assert knees([piece(spring)], T, GAMMA, FORM, ZERO) == ()

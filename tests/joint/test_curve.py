@@ -4,15 +4,22 @@ import csv
 import json
 import re
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from closed_form_joint import CUBIC, LINEAR, OF_THETA_C, closed_form_log
 from command_line import working_in
-from recorded_logs import CONFIGURATION, REGRESSION, Array, awas_log, configured, write_log
+from recorded_logs import (
+    CONFIGURATION,
+    REGRESSION,
+    Array,
+    Columns,
+    awas_log,
+    configured,
+    in_memory,
+    write_log,
+)
 from sigmahat.cli import main
 from sigmahat.joint.curve import CURVE, Branch, curve_text, nearest, polynomial_in_words, read_curve
 from sigmahat.joint.sheet import Polynomial, start_of, with_knees
@@ -25,7 +32,6 @@ from sigmahat.logs.readers.formats import open_log
 
 GAIN = 0.02
 """Standard deviation of the gain of the torque: start value of prior.torque_gain."""
-Columns = dict[str, NDArray[Any]]
 CLOSED_FORM = configured(
     *("motor.B = 2.3e-5", "motor.D_theta = 1e-3", "motor.gamma = 50", "samplePeriod = 0.001"),
     *("prior.B = 0.05", "prior.tau_coulomb = 0.02", "prior.tau_e = 20", "noise.tau = 1e-3"),
@@ -36,8 +42,7 @@ CLOSED_FORM = configured(
 
 
 def estimated(columns: Columns, configuration: str, folder: Path) -> Estimate:
-    (folder / "log.toml").write_text(configuration)
-    log = open_log(write_log(columns, folder / "log.parquet"))
+    log = open_log(write_log(columns, folder / "log.parquet", configuration))
     with working_in(folder):
         return estimate(log, read_configuration(folder / "log.toml"), folder)
 
@@ -54,16 +59,15 @@ def truth(branch: Branch) -> tuple[Array, Array]:
 
 
 @pytest.mark.slow("twenty logs are estimated")
-def test_the_bands_hold_the_truth_as_often_as_they_say(tmp_path: Path) -> None:
+def test_the_bands_hold_the_truth_as_often_as_they_say() -> None:
     """Each log has its own noise, and a gain of the torque as likely as the configuration says."""
     gains = 1 + GAIN * np.random.default_rng(2).normal(size=20)
-    (tmp_path / "log.toml").write_text(CLOSED_FORM)
-    configuration = read_configuration(tmp_path / "log.toml")
+    configuration = in_memory(CLOSED_FORM)
     inside: dict[str, list[float]] = {"tau_e": [], "sigma": []}
     scores = []
     for seed, gain in enumerate(gains):
         columns = closed_form("variable_stiffness", seed, float(gain))
-        found = estimate(LogInMemory(tmp_path / "log", columns), configuration).curve
+        found = estimate(LogInMemory(Path("log"), columns), configuration).curve
         assert len(found.branches) == 5
         for branch in found.branches:
             torque, stiffness = truth(branch)
@@ -183,13 +187,18 @@ def test_a_fixed_spring_with_an_offset_has_one_curve(tmp_path: Path) -> None:
     assert float(middle[2]) < LINEAR < float(middle[4])
 
 
-def test_paper2011_has_a_curve_without_a_band(tmp_path: Path) -> None:
+def test_paper2011_has_a_curve_without_a_band_and_claims_no_interval(tmp_path: Path) -> None:
     result = estimated(awas_log(1.0, 0.3, 4.0), CONFIGURATION, tmp_path)
     assert result.curve.branches and not result.curve.claims
     read = read_curve(tmp_path / CURVE, result.curve.polynomial)
     assert [b.sigma_std for b in read.branches] == [None] * len(read.branches)
     assert "not claimed" in "".join(curve_text(result.curve))
     assert len(read_points(tmp_path / POINTS).phi) > 1000
+    sheet = json.loads((tmp_path / "joint.json").read_text())
+    assert sheet["curve"] is None and sheet["at_the_end"]["interval"] is None
+    assert {p["interval"] for p in sheet["parameters"].values()} == {None}
+    assert set(sheet["parameters"]) == {"gamma", "B", "D_theta"}
+    assert sheet["start_values"]["rls.n"] == 6
 
 
 def test_a_joint_that_does_not_move_has_a_point(tmp_path: Path) -> None:
@@ -241,11 +250,8 @@ OF_KNEE = Polynomial(
     phi=None,
     set_point=None,
 )
-ANGLES = np.linspace(-0.2, 0.3, 101)
-SETTINGS = np.linspace(1.0, 2.0, 101)
+ANGLES, SETTINGS = np.linspace(-0.2, 0.3, 101), np.linspace(1.0, 2.0, 101)
 SLOPE = 100 + 3 * SETTINGS + 40 * ANGLES - 120 * ANGLES**2
-
-
 TORQUE = 0.5 + (100 + 3 * SETTINGS) * ANGLES + 20 * ANGLES**2 - 40 * ANGLES**3
 
 

@@ -18,6 +18,7 @@ from sigmahat.fmi import native
 from sigmahat.fmi.instance import Fmu, Slave
 from sigmahat.fmi.sample_loop import Recorder, SampleLoop
 
+Samples = dict[str, NDArray[Any]]
 T, N = 1e-3, 3000
 INPUTS = ("theta", "q", "tau", "theta_c")
 SETTINGS: list[dict[str, Any]] = [
@@ -29,7 +30,7 @@ SETTINGS: list[dict[str, Any]] = [
 
 
 @pytest.fixture(scope="module")
-def z() -> dict[str, NDArray[np.float64]]:
+def z() -> Samples:
     """Measurements of table1, a gap of ten samples among them."""
     plant = one_seed("table1").recording.plant
     measured = {name: plant[f"{name}_measured"][:N].copy() for name in INPUTS}
@@ -37,9 +38,7 @@ def z() -> dict[str, NDArray[np.float64]]:
     return measured
 
 
-def by_fmu(
-    z: Mapping[str, NDArray[np.float64]], start: Mapping[str, Any]
-) -> dict[str, NDArray[Any]]:
+def by_fmu(z: Samples, start: Mapping[str, Any]) -> Samples:
     """All outputs of the FMU, called from Python."""
     with Fmu(sigmahat.fmu("StiffnessEstimator")) as fmu, Slave(fmu, "one") as slave:
         slave.initialize(start)
@@ -55,9 +54,7 @@ def by_fmu(
 
 @pytest.mark.filterwarnings("ignore")
 @pytest.mark.parametrize("start", SETTINGS, ids=str)
-def test_run_gives_the_bits_of_the_fmu(
-    start: dict[str, Any], z: dict[str, NDArray[np.float64]]
-) -> None:
+def test_run_gives_the_bits_of_the_fmu(start: dict[str, Any], z: Samples) -> None:
     expected = by_fmu(z, start)
     estimator = sigmahat.Estimator(start, record=list(expected))
     found = estimator.run(**z)
@@ -72,9 +69,7 @@ def test_run_gives_the_bits_of_the_fmu(
 
 
 @pytest.mark.parametrize("start", SETTINGS[1:3], ids=str)
-def test_ticks_are_those_of_run_also_in_turns(
-    start: dict[str, Any], z: dict[str, NDArray[np.float64]]
-) -> None:
+def test_ticks_are_those_of_run_also_in_turns(start: dict[str, Any], z: Samples) -> None:
     record = ("sigma", "confident", "doubt", "valid")
     whole = sigmahat.Estimator(start, record).run(**z)
     estimator = sigmahat.Estimator(start, record)
@@ -87,7 +82,7 @@ def test_ticks_are_those_of_run_also_in_turns(
     assert isinstance(ticks[0]["doubt"], str)
 
 
-def test_many_joints_are_as_many_estimators(z: dict[str, NDArray[np.float64]]) -> None:
+def test_many_joints_are_as_many_estimators(z: Samples) -> None:
     alone = [sigmahat.Estimator(each).run(**z)["sigma"] for each in SETTINGS]
     several = {name: np.tile(each, (len(SETTINGS), 1)) for name, each in z.items()}
     together = sigmahat.Estimator(SETTINGS)
@@ -101,7 +96,7 @@ def test_many_joints_are_as_many_estimators(z: dict[str, NDArray[np.float64]]) -
     assert tick["sigma"].shape == (len(SETTINGS),) and tick["valid"].dtype == bool
 
 
-def test_reset_forgets_and_keeps_what_was_tuned(z: dict[str, NDArray[np.float64]]) -> None:
+def test_reset_forgets_and_keeps_what_was_tuned(z: Samples) -> None:
     estimator = sigmahat.Estimator({})
     first = estimator.run(**z)["sigma"]
     estimator.reset()
@@ -135,7 +130,7 @@ def test_parameters_that_do_not_fit(parameters: Any, message: str) -> None:
         sigmahat.Estimator(parameters)
 
 
-def test_what_is_misused_is_named_and_changes_nothing(z: dict[str, NDArray[np.float64]]) -> None:
+def test_what_is_misused_is_named_and_changes_nothing(z: Samples) -> None:
     with pytest.raises(ValueError, match="sigma_hat"):
         sigmahat.Estimator({}, record=["sigma_hat"])
     estimator = sigmahat.Estimator({})
@@ -161,7 +156,7 @@ def test_what_is_misused_is_named_and_changes_nothing(z: dict[str, NDArray[np.fl
     np.testing.assert_array_equal(run(**z)["sigma"], expected)
 
 
-def test_masked_samples_are_skipped(z: dict[str, NDArray[np.float64]]) -> None:
+def test_masked_samples_are_skipped(z: Samples) -> None:
     mask = np.arange(N) % 7 == 0
     found = sigmahat.Estimator({}).run(**{**z, "q": np.ma.masked_array(z["q"] + 9.0 * mask, mask)})
     gaps = sigmahat.Estimator({}).run(**{**z, "q": np.where(mask, np.nan, z["q"])})
@@ -170,7 +165,7 @@ def test_masked_samples_are_skipped(z: dict[str, NDArray[np.float64]]) -> None:
 
 
 @pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy])
-def test_a_copy_goes_on_by_itself(copied: Any, z: dict[str, NDArray[np.float64]]) -> None:
+def test_a_copy_goes_on_by_itself(copied: Any, z: Samples) -> None:
     estimator = sigmahat.Estimator({})
     estimator.run(**{name: each[:1000] for name, each in z.items()})
     other, later = copied(estimator), {name: each[1000:] for name, each in z.items()}
@@ -181,7 +176,7 @@ def test_a_copy_goes_on_by_itself(copied: Any, z: dict[str, NDArray[np.float64]]
 
 
 def test_tuned_parameters_have_their_effect_while_it_runs(
-    z: dict[str, NDArray[np.float64]],
+    z: Samples,
 ) -> None:
     estimator = sigmahat.Estimator({"method": "FilteredRegression"})
     with Instance(sigmahat.fmu("StiffnessEstimator")).initialise({"method": 2}) as fmu:
@@ -218,7 +213,7 @@ except KeyboardInterrupt:
     assert run(sys.executable, "-c", program) == "interrupted\n"
 
 
-def test_the_estimate_is_evaluated_at_any_deformation(z: dict[str, NDArray[np.float64]]) -> None:
+def test_the_estimate_is_evaluated_at_any_deformation(z: Samples) -> None:
     """At the point of the last tick it gives the outputs, and nothing is learned."""
     estimator = sigmahat.Estimator({"method": "FilteredRegression", "rls.n": 3})
     estimator.run(**z)
@@ -233,7 +228,7 @@ def test_the_estimate_is_evaluated_at_any_deformation(z: dict[str, NDArray[np.fl
     assert estimator.evaluate(np.nan)["sigma_std"] == np.inf
 
 
-def test_many_estimates_are_evaluated_at_the_same_points(z: dict[str, NDArray[np.float64]]) -> None:
+def test_many_estimates_are_evaluated_at_the_same_points(z: Samples) -> None:
     both = [{"method": "FilteredRegression"}, {"method": "Paper2011"}]
     estimator = sigmahat.Estimator(both)
     estimator.run(**{name: np.tile(each, (2, 1)) for name, each in z.items()})
