@@ -13,11 +13,7 @@ Times = Mapping[str, NDArray[np.float64]]
 the subject did not run."""
 
 SIZES = (3, 6, 18, 40)
-LABELS = {
-    "sigmahat": "sigmahat",
-    "eigen": "Eigen",
-    "covariance": "covariance alone, plain loops",
-}
+LABELS = {"sigmahat": "sigmahat", "eigen": "Eigen", "covariance": "covariance alone, plain loops"}
 FMPY = "simulate_fmu of FMPy"
 
 
@@ -106,9 +102,7 @@ def _short(times: Times, name: str) -> str:
 
 
 def _processor() -> str:
-    found = re.search(r"model name\s*:\s*(.*)", _read(Path("/proc/cpuinfo")))
-    return f"{found[1] if found else platform.processor() or platform.machine()}"
-
-
-def _read(path: Path) -> str:
-    return path.read_text(encoding="utf-8") if path.exists() else ""
+    path = Path("/proc/cpuinfo")
+    text = path.read_text(encoding="utf-8") if path.exists() else ""
+    found = re.search(r"model name\s*:\s*(.*)", text)
+    return found[1] if found else platform.processor() or platform.machine()

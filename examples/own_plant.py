@@ -92,11 +92,7 @@ def main(folder: Path) -> None:
                 # One transmission without set-point: rls.m = 1; phi and phi^3: rls.n = 2. phi^3 is
                 # some 1e-4, so over 10 000 ticks the ridge 1/(c P_0) must be far below 1e-4.
                 start={"rls.n": 2, "rls.m": 1, "rls.P_0": 1e28},
-                connections={
-                    "theta": "theta_measured",
-                    "q": "q_measured",
-                    "tau": "tau_measured",
-                },
+                connections={"theta": "theta_measured", "q": "q_measured", "tau": "tau_measured"},
                 record=["sigma"],
             )
         },

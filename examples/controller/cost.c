@@ -71,13 +71,6 @@ static unsigned __attribute__((noinline)) stack(void (*function)(void))
     return depth;
 }
 
-/* The parameters for which report() measures. */
-static void configure(int method)
-{
-    sh_parameters_default(&parameters);
-    parameters.method = method;
-}
-
 /* Leaves the columns of the spring, the bias, and the friction of the motor. */
 static void remove_columns(void)
 {
@@ -126,10 +119,11 @@ int main(void)
 
     hardware_start_clock();
     per_count = 200000.0 / (double)(counts(loop) - counts(nothing));
-    configure(SH_METHOD_PAPER2011);
+    sh_parameters_default(&parameters);
+    parameters.method = SH_METHOD_PAPER2011;
     printf("orders %d and %d\n", parameters.rls.n, parameters.rls.m);
     report("Paper2011", per_count);
-    configure(SH_METHOD_FILTERED_REGRESSION);
+    parameters.method = SH_METHOD_FILTERED_REGRESSION;
     report("FilteredRegression, all columns", per_count);
     remove_columns();
     report("FilteredRegression, few columns", per_count);

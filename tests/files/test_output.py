@@ -2,12 +2,12 @@
 
 import hashlib
 import shutil
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
+from controllers import run
 from gate import need
 from sigmahat.files.output import created_folder, output_folder, sha256, write_whole
 
@@ -62,9 +62,7 @@ def test_a_file_is_replaced_at_once_or_not_changed(tmp_path: Path) -> None:
 
 def test_a_device_is_written_to(tmp_path: Path) -> None:
     code = "from sigmahat.files.output import *; write_whole('text', Path('/dev/stdout'))"
-    command = [sys.executable, "-c", code]
-    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
-    assert (done.stdout, done.stderr) == ("text", "")
+    assert run(sys.executable, "-c", code, cwd=tmp_path) == "text"
 
 
 def test_the_digest_of_a_file(tmp_path: Path) -> None:
@@ -81,10 +79,9 @@ def test_the_digest_of_a_folder(tmp_path: Path) -> None:
     (bag / "more").mkdir(parents=True)
     (bag / "metadata.yaml").write_text("a")
     (bag / "more" / "bag.db3").write_text("b")
-    command = [need("sha256sum"), "metadata.yaml", "more/bag.db3"]
-    listed = subprocess.run(command, cwd=bag, capture_output=True, check=True)
+    listed = run(need("sha256sum"), "metadata.yaml", "more/bag.db3", cwd=bag)
     found = sha256(bag)
-    assert found == hashlib.sha256(listed.stdout).hexdigest()
+    assert found == hashlib.sha256(listed.encode()).hexdigest()
     assert found == sha256(shutil.copytree(bag, tmp_path / "copy"))
     (bag / "more" / "bag.db3").write_text("c")
     assert sha256(bag) != found

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from controllers import run
 from gate import need
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "live"
@@ -22,13 +23,9 @@ pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="it needs timerf
 def program(build: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     cmake, folder = need("cmake"), tmp_path_factory.mktemp("live")
     need("cc")
-    ninja = build / "venv" / "bin" / "ninja"
-    configure = [cmake, "-S", EXAMPLE, "-B", folder, "-G", "Ninja"]
-    for command in (
-        [*configure, f"-DCMAKE_MAKE_PROGRAM={ninja}"],
-        [cmake, "--build", folder],
-    ):
-        subprocess.run([*map(str, command)], check=True, capture_output=True)
+    ninja = f"-DCMAKE_MAKE_PROGRAM={build / 'venv' / 'bin' / 'ninja'}"
+    run(cmake, "-S", EXAMPLE, "-B", folder, "-G", "Ninja", ninja)
+    run(cmake, "--build", folder)
     return folder / "live"
 
 

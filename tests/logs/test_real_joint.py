@@ -4,7 +4,6 @@ The requirements were chosen after a first look at the data: see docs/real-joint
 """
 
 import re
-import subprocess
 import sys
 from pathlib import Path
 
@@ -13,6 +12,7 @@ import pytest
 
 import real_joint
 from command_line import Shell
+from controllers import run
 from real_joint import SETTINGS, Fit, Log, M, N
 from recorded_logs import read_estimate
 from shared_data import data_folder
@@ -109,7 +109,7 @@ def test_the_page_gives_the_same(data: Path, general: Fit, shell: Shell) -> None
     page = (Path(__file__).parents[2] / "docs" / "real-joint.md").read_text()
     (program,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
     (configuration,) = re.findall(r"```toml\n(.*?)```", page, re.DOTALL)
-    subprocess.run([sys.executable, "-c", program, str(data)], check=True)
+    run(sys.executable, "-c", program, data)
     Path("desr.toml").write_text(configuration)
     shell.run("estimate desr.csv --out out")
     table = read_estimate(Path("out"))

@@ -1,21 +1,21 @@
 """The proposed motion: closed form, other solvers, a C compiler, and joints that nobody tried."""
 
-import subprocess
 from collections.abc import Iterator
 from dataclasses import replace
+from io import StringIO
 from pathlib import Path
 
 import numpy as np
 import pytest
+import tomlkit
 import yaml
 from scipy.integrate import solve_ivp
 
-from command_line import Shell
-from recorded_logs import configured
+from controllers import run
+from recorded_logs import configured, in_memory
 from sigmahat.cli import main
 from sigmahat.identification.identify import identify
 from sigmahat.identification.write import update
-from sigmahat.logs.configuration import checked_configuration, read_document
 from sigmahat.logs.log import LogError
 from sigmahat.motion import known
 from sigmahat.motion.design import Sensors, _log, design, relative_half_width
@@ -114,12 +114,9 @@ def test_the_c_code_and_the_trajectory_for_ros_are_the_csv(
         'motion(k * 1e-3, &p, &v, &a); printf("%.17g %.17g %.17g\\n", p, v, a); } return 0; }\n'
     )
     flags = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror"]
-    binary = str(tmp_path / "program")
-    sources = [str(program), str(written / "motion.c")]
-    subprocess.run(["cc", *flags, *sources, "-o", binary, "-lm"], check=True)
-    output = subprocess.run([binary], check=True, capture_output=True, text=True).stdout
-    found = np.array([line.split() for line in output.splitlines()], dtype=float)
-    np.testing.assert_allclose(found, rows[:, 1:], atol=1e-9)
+    binary = tmp_path / "program"
+    run("cc", *flags, program, written / "motion.c", "-o", binary, "-lm")
+    np.testing.assert_allclose(np.loadtxt(StringIO(run(binary))), rows[:, 1:], atol=1e-9)
 
     trajectory = yaml.safe_load((written / "motion.yaml").read_text())
     assert trajectory["joint_names"] == ["joint"]
@@ -130,15 +127,13 @@ def test_the_c_code_and_the_trajectory_for_ros_are_the_csv(
         np.testing.assert_allclose([p[key][0] for p in points], rows[::10, column], atol=1e-7)
 
 
-def test_what_a_log_says_contains_the_joint(tmp_path: Path) -> None:
-    configuration = tmp_path / "knee.toml"
+def test_what_a_log_says_contains_the_joint() -> None:
     encoders = ("encoder.theta = 4e5", "encoder.q = 4e5")
     text = configured("motor.gamma = 100", "samplePeriod = 2e-3", *encoders)
-    configuration.write_text(text.replace('time.column = "t"\n', ""))
-    log = _log(JOINT, MOTION, SENSORS)
-    document = read_document(configuration)
-    update(document, identify(log, checked_configuration(document, configuration)))
-    found = known.of_log(log, checked_configuration(document, configuration), start=0.0)
+    text = text.replace('time.column = "t"\n', "")
+    log, document = _log(JOINT, MOTION, SENSORS), tomlkit.parse(text)
+    update(document, identify(log, in_memory(text)))
+    found = known.of_log(log, in_memory(tomlkit.dumps(document)), start=0.0)
     for name in ("k", "M", "weight", "B", "tau_coulomb"):
         low, true, high = (getattr(each, name) for each in (found.low, JOINT, found.high))
         assert low <= true <= high, name
@@ -163,19 +158,3 @@ def test_joints_of_limits_and_corners() -> None:
         assert all(vars(joints.low)[n] <= v <= vars(joints.high)[n] for n, v in vars(joint).items())
     only = Ranges(JOINT, replace(JOINT, k=2 * JOINT.k))
     assert {each.k for each in only.corners()} == {JOINT.k, 2 * JOINT.k}
-
-
-@pytest.mark.parametrize(
-    ("arguments", "expected"),
-    [
-        ("--seconds 5", "no motion of 5 s stays below the lowest resonance"),
-        ("--after log.csv", "needs CONFIG"),
-        ("--seconds 1", "5<=x<=600"),
-        ("--torque -1", "0<x<=1000000.0"),
-        ("--torque nan", "expected a number, got nan"),
-        ("missing.toml", "missing.toml"),
-    ],
-)
-def test_wrong_arguments(arguments: str, expected: str, shell: Shell) -> None:
-    assert expected in shell.refused(f"motion {OPTIONS} {arguments}")
-    assert not list(Path().iterdir())
