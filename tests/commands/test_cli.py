@@ -13,22 +13,23 @@ from pathlib import Path
 import pytest
 
 from command_line import Shell
+from controllers import run
 from gate import need
+from recorded_logs import CONFIGURATION, awas_log, write_log
 from sigmahat.cli import cli
 from sigmahat.fmi import installed
 from sigmahat.paper.scenarios import SCENARIOS
+from sweeps import QUICK
 
-COMMAND = [sys.executable, "-m", "sigmahat"]
+MOTION = "motion --angle 0.8 --velocity 1.5 --torque 60 --deformation 0.03"
 
 
 @pytest.mark.slow("a whole reproduction with its figures")
-def test_reproduce_prints_the_table_and_writes_every_file(tmp_path: Path) -> None:
-    done = subprocess.run([*COMMAND, "reproduce"], cwd=tmp_path, capture_output=True, text=True)
-    assert (done.returncode, done.stderr) == (0, "")
-    out = tmp_path / "sigmahat-results" / "table1"
-    assert str(out) in done.stdout
-    for words in ("table1", "V_a", "MODEL", "24.14", "SENSOR", "24.36", "RESIDUAL", "128.16"):
-        assert words in done.stdout
+def test_reproduce_prints_the_table_and_writes_every_file(shell: Shell) -> None:
+    printed, out = shell.run("reproduce"), Path("sigmahat-results", "table1").absolute()
+    assert shell.err == ""
+    words = ("table1", "V_a", "MODEL", "24.14", "SENSOR", "24.36", "RESIDUAL", "128.16")
+    assert all(each in printed for each in (str(out), *words))
     expected = {f"{name}.{kind}" for name in SCENARIOS["table1"].figures for kind in ("png", "svg")}
     expected |= {"MODEL.csv", "MODEL-measured.csv", "SENSOR.csv", "RESIDUAL.csv", "table.csv"}
     assert {path.name for path in out.iterdir()} == expected
@@ -79,25 +80,23 @@ def test_bash_completes(tmp_path: Path) -> None:
         line += f"\nCOMPREPLY=(); COMP_WORDS=({words}); COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1))\n"
         line += '_sigmahat_completion sigmahat; echo "${COMPREPLY[@]}"'
     programs = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    done = subprocess.run(
-        [bash, "-c", line],
-        cwd=tmp_path,
-        env={**os.environ, "PATH": programs},
-        capture_output=True,
-        text=True,
-    )
-    assert (done.returncode, done.stderr) == (0, "")
-    assert [set(each.split()) for each in done.stdout.splitlines()] == [*expected.values()]
+    printed = run(bash, "-c", line, cwd=tmp_path, environment={"PATH": programs})
+    assert [set(each.split()) for each in printed.splitlines()] == [*expected.values()]
 
 
-def test_help_imports_nothing_slow() -> None:
-    code = (
-        "import sys, sigmahat.cli; sigmahat.cli.main(['--help'])\n"
-        "slow = {'numpy', 'fmpy', 'matplotlib', 'casadi', 'scipy', 'pyarrow', 'bokeh', 'dask'}\n"
-        "print(sorted(slow & set(sys.modules)))"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
-    assert done.stdout.splitlines()[-1] == "[]"
+@pytest.mark.parametrize(
+    ("command", "slow"),
+    [
+        ("--help", "numpy fmpy matplotlib casadi scipy pyarrow bokeh dask"),
+        ("check log.parquet --quiet", "pandas scipy.signal scipy.stats matplotlib bokeh"),
+    ],
+)
+def test_a_command_imports_what_it_uses(command: str, slow: str, tmp_path: Path) -> None:
+    write_log(awas_log(1.0, 0.3, 5.0), tmp_path / "log.parquet", CONFIGURATION)
+    code = f"import sys, sigmahat.cli; sigmahat.cli.main({command.split()})\n"
+    code += f"print({{*{slow.split()}}} & {{*sys.modules}})"
+    *printed, slow_ones = run(sys.executable, "-c", code, cwd=tmp_path).splitlines()
+    assert slow_ones == "set()" and (printed == []) == ("--quiet" in command)
 
 
 @pytest.mark.parametrize(
@@ -109,6 +108,24 @@ def test_help_imports_nothing_slow() -> None:
         ("compare --seeds 1.5", ["--seeds"]),
         ("reprodce", ["reproduce"]),
         ("reproduce --sedes 2", ["--seeds"]),
+        ("compare --misfit", ["--misfits"]),
+        ("compare --misfits AwAS", ["AwAS"]),
+        ("compare --misfits --jobs 0", ["--jobs"]),
+        ("compare --misfits --jobs two", ["--jobs"]),
+        ("compare --misfits --seed 2", ["--seeds"]),
+        ("sweep --modality RESIDUL", ["did you mean 'RESIDUAL'?"]),
+        (f"{QUICK} --set plant.motor.D_theta", ["expected NAME=VALUES"]),
+        (f"{QUICK} --seeds 0", ["--seeds"]),
+        (f"{QUICK} missing.toml", ["cannot read missing.toml"]),
+        (f"{QUICK} --set 'estimator.motor.B=uniform(-2,-1)'", ["every run failed"]),
+        (f"{QUICK} --scheduler tcp://127.0.0.1:9", ["no Dask scheduler at tcp://127.0.0.1:9"]),
+        (f"{QUICK} --scheduler nonsense", ["start one with `dask scheduler`"]),
+        (f"{MOTION} --seconds 5", ["no motion of 5 s stays below the lowest resonance"]),
+        (f"{MOTION} --after log.csv", ["needs CONFIG"]),
+        (f"{MOTION} --seconds 1", ["5<=x<=600"]),
+        (f"{MOTION} --torque -1", ["0<x<=1000000.0"]),
+        (f"{MOTION} --torque nan", ["expected a number, got nan"]),
+        (f"{MOTION} missing.toml", ["missing.toml"]),
         pytest.param(
             "reproduce --out /proc/sigmahat",  # nobody may write there
             ["cannot write /proc/sigmahat"],
@@ -133,10 +150,9 @@ def test_folder_that_is_a_file(out: str, shell: Shell) -> None:
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
 def test_output_that_cannot_be_written(tmp_path: Path) -> None:
+    command, pipe = [sys.executable, "-m", "sigmahat", "scenarios"], subprocess.PIPE
     with Path("/dev/full").open("w") as full:
-        done = subprocess.run(
-            [*COMMAND, "scenarios"], cwd=tmp_path, stdout=full, stderr=subprocess.PIPE, text=True
-        )
+        done = subprocess.run(command, cwd=tmp_path, stdout=full, stderr=pipe, text=True)
     assert done.returncode == 2
     (line,) = done.stderr.splitlines()
     assert "cannot write the output" in line
@@ -168,13 +184,9 @@ def test_interrupt(name: str, seeds: str, delay: float, tmp_path: Path) -> None:
         "import sys, sigmahat.cli as c; run = c.cli.main; "
         "c.cli.main = lambda *a, **k: print(flush=True) or run(*a, **k); sys.exit(c.main())"
     )
+    command, pipe = [sys.executable, "-c", started, name, "--seeds", seeds], subprocess.PIPE
     process = subprocess.Popen(
-        [sys.executable, "-c", started, name, "--seeds", seeds],
-        cwd=tmp_path,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
+        command, cwd=tmp_path, stdout=pipe, stderr=pipe, text=True, start_new_session=True
     )
     assert process.stdout is not None and process.stdout.readline() == "\n"
     time.sleep(delay)

@@ -20,13 +20,14 @@ class Without:
             raise ModuleNotFoundError(f"No module named {name!r}", name=name)
 
 sys.meta_path.insert(0, Without)
-sys.exit(main(sys.argv[2:]))
 """
 
 
-def run_without(module: str, *arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
-    """Runs a command as if a module were not installed."""
-    command = [sys.executable, "-c", WITHOUT, module, *arguments]
+def run_without(
+    module: str, *arguments: str, cwd: Path, program: str = "sys.exit(main(sys.argv[2:]))"
+) -> subprocess.CompletedProcess[str]:
+    """Runs a command, or another program, as if a module were not installed."""
+    command = [sys.executable, "-c", WITHOUT + program, module, *arguments]
     return subprocess.run(command, cwd=cwd, capture_output=True, text=True)
 
 
@@ -65,9 +66,7 @@ def test_what_sigmahat_does_not_require_is_a_fault_that_shows(tmp_path: Path) ->
 
 @pytest.mark.parametrize("name", ["encoder", "PlantEquations", "write_plant_fmu"])
 def test_a_public_name_says_what_to_install(name: str, tmp_path: Path) -> None:
-    without = WITHOUT.replace("sys.exit(main(sys.argv[2:]))", f"from sigmahat import {name}")
-    command = [sys.executable, "-c", without, "casadi"]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    done = run_without("casadi", cwd=tmp_path, program=f"from sigmahat import {name}")
     install = shlex.join([sys.executable, "-m", "pip", "install", "sigmahat[plants]"])
     *_, line = done.stderr.splitlines()
     assert line == f"ModuleNotFoundError: casadi is not installed; to install it: {install}"

@@ -2,16 +2,16 @@
 
 import csv
 import math
-from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
+from itertools import product
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from command_line import Shell
 from regression_joint import WITHOUT_MISFITS
-from sigmahat.cli import main
 from sigmahat.compare import conditions
 from sigmahat.compare import table as labels
 from sigmahat.compare.conditions import JOINTS, METHODS, REGRESSION, Joint
@@ -130,12 +130,6 @@ def drawn(run: int, with_inertia: bool) -> Scenario:
     )
 
 
-def share(runs: Sequence[int], with_inertia: bool) -> tuple[float, float]:
-    """Mean of the share over runs, and half the width of its 95 % interval [%]."""
-    jobs = [partial(measured, drawn(k, with_inertia), k + 1, performances) for k in runs]
-    return mean_interval([each[REGRESSION].inside for each in run_all(jobs, processes=2)])
-
-
 @pytest.mark.parametrize("with_inertia", [False, True])
 @pytest.mark.slow("many runs, to see how often the truth is inside")
 def test_claims_the_right_uncertainty(with_inertia: bool) -> None:
@@ -144,7 +138,9 @@ def test_claims_the_right_uncertainty(with_inertia: bool) -> None:
     The share differs from run to run, and instants of one run are not independent. So the test is
     of the interval of the mean over runs.
     """
-    inside, half_width = share(range(20), with_inertia)
+    jobs = [partial(measured, drawn(k, with_inertia), k + 1, performances) for k in range(20)]
+    shares = [each[REGRESSION].inside for each in run_all(jobs, processes=2)]
+    inside, half_width = mean_interval(shares)
     assert half_width < 8.0
     assert inside + half_width >= 90.0
     assert inside - half_width <= 99.0
@@ -154,49 +150,37 @@ def test_printed_table(runs: list[list[Row]]) -> None:
     rows = runs[0]
     head, *lines = table(rows).splitlines()
     assert head.split()[:4] == ["Paper2011", "[%]", "FilteredRegression", "[%]"]
-    assert [line for line in lines if line and not line.startswith(" ")] == list(
-        dict.fromkeys(map(labels.group, rows))
-    )
+    groups = [line for line in lines if line and not line.startswith(" ")]
+    assert groups == list(dict.fromkeys(map(labels.group, rows)))
     of_joints = [line for line in lines if line.startswith(" ")]
     for row, line in zip(rows, of_joints, strict=True):
         name, *cells = [cell for cell in line.split("  ") if cell]
         regression = row.performance[REGRESSION]
         assert name.startswith(f"{labels.motion(row.joint)}, {labels.case_and_part(row)}")
         assert ("after" in name) == (row.judged_from > 0)
-        assert [float(cell) for cell in cells[:2]] == pytest.approx(
-            [row.error(method) for method in METHODS], rel=0.005
-        )
+        errors = [row.error(method) for method in METHODS]
+        assert [float(cell) for cell in cells[:2]] == pytest.approx(errors, rel=0.005)
         assert float(cells[2]) == pytest.approx(regression.sigma_std, abs=0.005)
         assert float(cells[3]) == pytest.approx(regression.inside, abs=0.5)
         motors = [regression.D_theta, regression.B, regression.tau_coulomb]
-        for cell, value in zip(cells[4:], motors, strict=True):
-            assert (
-                cell.strip() == "-"
-                if math.isnan(value)
-                else float(cell) == pytest.approx(value, rel=1e-3)
-            )
+        found = [float("nan" if cell.strip() == "-" else cell) for cell in cells[4:]]
+        assert found == pytest.approx(motors, rel=1e-3, nan_ok=True)
 
 
 @pytest.mark.slow("two joints of the comparison, twice over two seeds")
-def test_command(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_command(shell: Shell, monkeypatch: pytest.MonkeyPatch) -> None:
     """Means over seeds do not depend on the number of processes, and the file has all digits."""
     joints = [JOINTS[2], JOINTS[-1]]
     monkeypatch.setattr(conditions, "JOINTS", joints)
-    out = tmp_path / "out"
-    assert main(["compare", "--seeds", "2", "--out", str(out)]) == 0
-    printed = capsys.readouterr().out
+    out = Path("out").absolute()
+    printed = shell.run(f"compare --seeds 2 --out {out}")
     rows = compare(joints, [1, 2], processes=1)
     assert table(rows) in printed
     assert "2 seeds" in printed and str(out) in printed
     assert {path.name for path in out.iterdir()} == {"compare.png", "compare.svg", "compare.csv"}
     with (out / "compare.csv").open(newline="") as file:
         lines = list(csv.DictReader(file))
-    assert len(lines) == len(METHODS) * len(rows)
-    for line, (row, method) in zip(
-        lines, ((row, method) for row in rows for method in METHODS), strict=True
-    ):
+    for line, (row, method) in zip(lines, product(rows, METHODS), strict=True):
         words = (labels.motion(row.joint), labels.case_and_part(row), method)
         assert (line["joint"], line["case"], line["method"]) == words
         assert float(line["MSREP [%]"]) == row.error(method)

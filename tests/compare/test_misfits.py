@@ -9,11 +9,7 @@ import pytest
 
 from plant_runs import QUIET, times
 from sigmahat.compare.misfits import motion
-from sigmahat.compare.misfits.conditions import (
-    CONDITIONS,
-    Condition,
-    Group,
-)
+from sigmahat.compare.misfits.conditions import CONDITIONS, Condition, Group
 from sigmahat.compare.misfits.experiment import AWAS, JOINTS, SEA_1K, Experiment, Joint, draw
 from sigmahat.compare.misfits.job import Score, compare, pairs, score, settings
 from sigmahat.runs.scenario import Sine, Sines
@@ -132,11 +128,8 @@ def test_scores_add_up_over_instants() -> None:
     other = score(np.ones(1), np.ones(1), np.zeros(1), np.zeros(1, np.bool_))
     both = sum([one, other], Score())
     assert both.figures["error"] == pytest.approx(30 * math.sqrt(3 / 4))
-    assert (both.figures["coverage"], both.figures["confident"], both.figures["wrong"]) == (
-        100,
-        75,
-        75,
-    )
+    of_both = [both.figures[name] for name in ("coverage", "confident", "wrong")]
+    assert of_both == [100, 75, 75]
     assert math.isnan(Score().figures["error"])
 
 

@@ -1,33 +1,19 @@
-"""Sweeps as a user starts them, in this process or in one of their own."""
+"""Sweeps as a user starts them, in a process of their own."""
 
+import shlex
 import subprocess
 import sys
 import time
-from collections.abc import Sequence
 from pathlib import Path
 
-from command_line import in_process, one_line
-
-COMMAND = [sys.executable, "-m", "sigmahat", "sweep"]
-QUICK = ["--modality", "RESIDUAL"]
+QUICK = "sweep --modality RESIDUAL"
 """One run takes a fraction of a second."""
 
 
-def run(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
-    """Runs a sweep to its end, in this process."""
-    return in_process("sweep", *arguments, cwd=cwd)
-
-
-def start(arguments: Sequence[str], cwd: Path) -> subprocess.Popen[str]:
-    """Starts a sweep that goes on meanwhile."""
-    return subprocess.Popen(
-        [*COMMAND, *arguments], cwd=cwd, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    )
-
-
-def refused(*arguments: str, cwd: Path) -> str:
-    """Runs a sweep that must fail with one line, and returns that line."""
-    return one_line(run(*arguments, cwd=cwd))
+def start(command: str) -> subprocess.Popen[str]:
+    """Starts a command that goes on meanwhile."""
+    arguments, pipe = [sys.executable, "-m", "sigmahat", *shlex.split(command)], subprocess.PIPE
+    return subprocess.Popen(arguments, stdout=pipe, stderr=pipe, text=True)
 
 
 def records(path: Path) -> list[bytes]:

@@ -12,10 +12,11 @@ from pathlib import Path
 import distributed
 import pytest
 
+from command_line import Shell
 from sigmahat.runs.pool import WorkerError
 from sigmahat.sweep.plan import read_plan
 from sigmahat.sweep.preparation import execute, fmu_digest
-from sweeps import QUICK, records, run, start, wait_for_records
+from sweeps import QUICK, records, start, wait_for_records
 
 DASK = [sys.executable, "-m", "dask"]
 HERE = ["--host", "127.0.0.1", "--no-dashboard", "--scheduler-file", "scheduler.json"]
@@ -75,11 +76,11 @@ def wait_for_workers(address: str, count: int) -> None:
 
 @pytest.mark.slow("the sweep waits for a slow scheduler, and for workers, before it gives up")
 def test_a_scheduler_that_is_slow_and_without_workers(
-    scheduler: subprocess.Popen[bytes], address: str, tmp_path: Path
+    scheduler: subprocess.Popen[bytes], address: str, shell: Shell
 ) -> None:
     # GIVEN a scheduler that does nothing for much longer than one that is not there is waited for
     scheduler.send_signal(signal.SIGSTOP)
-    process = start([*QUICK, "--scheduler", address, "--out", "out"], tmp_path)
+    process = start(f"{QUICK} --scheduler {address} --out out")
     time.sleep(6)
     assert process.poll() is None
     scheduler.send_signal(signal.SIGCONT)
@@ -88,17 +89,17 @@ def test_a_scheduler_that_is_slow_and_without_workers(
     assert (process.returncode, output) == (2, "")
     (line,) = errors.splitlines()
     assert f"start one with `dask worker {address}`" in line
-    assert not (tmp_path / "out").exists()
+    assert not Path("out").exists()
 
 
 @pytest.mark.slow("a cluster of processes is started")
-def test_one_of_two_workers_killed(address: str, folder: Path, tmp_path: Path) -> None:
-    arguments = [*QUICK, "--seeds", "16"]
+def test_one_of_two_workers_killed(address: str, folder: Path, shell: Shell) -> None:
+    command = f"{QUICK} --seeds 16"
     with worker(folder, "one") as one, worker(folder, "two", runs=2):
         wait_for_workers(address, 2)
-        process = start([*arguments, "--scheduler", address, "--out", "cluster"], tmp_path)
+        process = start(f"{command} --scheduler {address} --out cluster")
         # WHEN a worker is killed while both have work
-        path = tmp_path / "cluster" / "runs.jsonl"
+        path = Path("cluster", "runs.jsonl")
         wait_for_records(path, 3, process)
         one.kill()
         done_before = len(records(path))
@@ -108,21 +109,19 @@ def test_one_of_two_workers_killed(address: str, folder: Path, tmp_path: Path) -
     # THEN every run is there once, as without a cluster
     seeds = [json.loads(line)["seed"] for line in records(path)]
     assert sorted(seeds) == list(range(1, 17))
-    here = run(*arguments, "--out", "here", cwd=tmp_path)
-    assert here.stdout.splitlines()[:-1] == output.splitlines()[:-1]
+    assert shell.run(f"{command} --out here").splitlines()[:-1] == output.splitlines()[:-1]
     for name in ("sweep.parquet", "summary.csv", "distributions.svg"):
-        assert (tmp_path / "cluster" / name).read_bytes() == (tmp_path / "here" / name).read_bytes()
+        assert Path("cluster", name).read_bytes() == Path("here", name).read_bytes()
 
 
 @pytest.mark.slow("a cluster of processes is started")
 def test_the_scheduler_is_lost(
-    scheduler: subprocess.Popen[bytes], address: str, folder: Path, tmp_path: Path
+    scheduler: subprocess.Popen[bytes], address: str, folder: Path, shell: Shell
 ) -> None:
-    arguments = [*QUICK, "--seeds", "200", "--out", "out"]
-    path = tmp_path / "out" / "runs.jsonl"
+    path = Path("out", "runs.jsonl")
     with worker(folder, "three"):
         wait_for_workers(address, 1)
-        process = start([*arguments, "--scheduler", address], tmp_path)
+        process = start(f"{QUICK} --seeds 200 --scheduler {address} --out out")
         wait_for_records(path, 3, process)
         scheduler.kill()
         output, errors = process.communicate(timeout=300)

@@ -1,6 +1,7 @@
 """The plan of a sweep, from a file and the command line."""
 
 import re
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -54,27 +55,14 @@ def test_runs_in_the_order_of_the_file(tmp_path: Path) -> None:
     path.write_text(PLAN)
     runs = read_plan(path).runs
     assert [run.number for run in runs] == list(range(16))
-    settings = [
-        (
-            r.scenario,
-            r.parameters["plant.motor.D_theta"],
-            r.parameters["estimator.rls.kind"],
-            r.seed,
-        )
-        for r in runs
-    ]
-    assert settings == [
-        (scenario, D, kind, seed)
-        for scenario in ("table1", "as-printed")
-        for D in (0.9e-3, 1.1e-3)
-        for kind in ("Enhanced", "Standard")
-        for seed in (1, 2)
-    ]
+    names = ("plant.motor.D_theta", "estimator.rls.kind")
+    settings = [(r.scenario, *(r.parameters[name] for name in names), r.seed) for r in runs]
+    lists = (("table1", "as-printed"), (0.9e-3, 1.1e-3), ("Enhanced", "Standard"), (1, 2))
+    assert settings == [*product(*lists)]
     # What is drawn is the same for the same seed, whatever else differs.
-    drawn = {seed: {r.parameters["RESIDUAL.motor.B"] for r in runs if r.seed == seed}
-             for seed in (1, 2)}  # fmt: skip
-    assert [len(values) for values in drawn.values()] == [1, 1]
-    assert drawn[1] != drawn[2]
+    drawn = {(r.seed, r.parameters["RESIDUAL.motor.B"]) for r in runs}
+    (_, first), (_, second) = sorted(drawn)  # two pairs
+    assert first != second
 
 
 def test_the_plan_of_the_documentation(tmp_path: Path) -> None:

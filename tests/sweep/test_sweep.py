@@ -11,13 +11,15 @@ import psutil
 import pytest
 import scipy.stats
 
+from command_line import Shell
 from recordings import one_seed
 from sigmahat.runs.metrics import INDICES, Indices
 from sigmahat.sweep.job import Records, sweep
 from sigmahat.sweep.plan import Outcome, Plan, read_plan
 from sigmahat.sweep.table import read
-from sweeps import QUICK, records, refused, run, start, wait_for_records
+from sweeps import QUICK, records, start, wait_for_records
 
+OUT = Path("out")
 FILES = {
     ".runs.jsonl.lock", "distributions.png", "distributions.svg", "parameters.png",
     "parameters.svg", "runs.jsonl", "summary.csv", "sweep.parquet",
@@ -37,25 +39,22 @@ def test_the_numbers_are_those_of_reproduce(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow("a sweep in processes of its own")
-def test_summary_and_errors_of_parameters(tmp_path: Path) -> None:
-    done = run(
-        *QUICK, "--seeds", "3", "--set", "plant.motor.D_theta=0.8e-3,1e-3",
-        "--set", "RESIDUAL.motor.D_theta=0.9e-3", "--set", "plant.link.M=uniform(0.09,0.11)",
-        "--json", "--out", "out", cwd=tmp_path,
-    )  # fmt: skip
-    assert (done.returncode, done.stderr) == (0, "")
-    assert {path.name for path in (tmp_path / "out").iterdir()} == FILES
-    table = read(tmp_path / "out" / "sweep.parquet").table.to_pylist()
+def test_summary_and_errors_of_parameters(shell: Shell) -> None:
+    values = ("plant.motor.D_theta=0.8e-3,1e-3", "RESIDUAL.motor.D_theta=0.9e-3")
+    options = " ".join(f"--set '{each}'" for each in (*values, "plant.link.M=uniform(0.09,0.11)"))
+    summary = shell.json(f"{QUICK} --seeds 3 {options} --out out")
+    assert shell.err == ""
+    assert {path.name for path in OUT.iterdir()} == FILES
+    table = read(OUT / "sweep.parquet").table.to_pylist()
     assert [row["run"] for row in table] == list(range(6))
     for row in table:
         true = row["plant.motor.D_theta [N.m.s/rad]"]
         assert row["error of motor.D_theta [%]"] == pytest.approx(100 * (0.9e-3 - true) / true)
         assert 0.09 <= row["plant.link.M [kg.m2]"] <= 0.11
-    with (tmp_path / "out" / "summary.csv").open() as file:
+    with (OUT / "summary.csv").open() as file:
         rows = list(csv.DictReader(file))
-    for row, printed, group in zip(
-        rows, json.loads(done.stdout), (table[:3], table[3:]), strict=True
-    ):
+    groups = (table[:3], table[3:])
+    for row, printed, group in zip(rows, summary, groups, strict=True):
         x = [r["msrep [%]"] for r in group]
         interval = scipy.stats.t.interval(0.95, 2, np.mean(x), scipy.stats.sem(x))
         half = (interval[1] - interval[0]) / 2
@@ -66,13 +65,13 @@ def test_summary_and_errors_of_parameters(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow("several sweeps, each in processes of its own")
-def test_killed_and_resumed_is_the_same_file(tmp_path: Path) -> None:
-    arguments = [*QUICK, "--seeds", "8", "--set", "estimator.residual.K_I=200,300"]
+def test_killed_and_resumed_is_the_same_file(shell: Shell) -> None:
+    command = f"{QUICK} --seeds 8 --set estimator.residual.K_I=200,300"
     # GIVEN a sweep in one go
-    assert run(*arguments, "--out", "whole", cwd=tmp_path).returncode == 0
+    shell.run(f"{command} --out whole")
     # WHEN another is killed in the middle, in the middle of a line
-    path = tmp_path / "killed" / "runs.jsonl"
-    process = start([*arguments, "--out", "killed"], tmp_path)
+    path = Path("killed", "runs.jsonl")
+    process = start(f"{command} --out killed")
     wait_for_records(path, 2, process)
     workers = psutil.Process(process.pid).children(recursive=True)
     process.send_signal(signal.SIGKILL)
@@ -84,18 +83,18 @@ def test_killed_and_resumed_is_the_same_file(tmp_path: Path) -> None:
     gone, alive = psutil.wait_procs(workers, timeout=300)
     assert (len(gone), alive) == (len(workers), [])
     # AND the same command does the rest, and only that
-    done = run(*arguments, "--out", "killed", cwd=tmp_path)
-    assert (done.returncode, done.stderr) == (0, "")
+    said = shell.run(f"{command} --out killed")
+    assert shell.err == ""
     assert path.read_bytes().startswith(before)
     done_runs = [json.loads(line) for line in records(path)]
     assert sorted((each["setting"], each["seed"]) for each in done_runs) == [
         (setting, seed) for setting in (0, 1) for seed in range(1, 9)
     ]
     for name in FILES - {"runs.jsonl"}:
-        assert (tmp_path / "whole" / name).read_bytes() == (tmp_path / "killed" / name).read_bytes()
+        assert Path("whole", name).read_bytes() == Path("killed", name).read_bytes()
     # AND once more, nothing is left to do
     complete = path.read_bytes()
-    assert run(*arguments, "--out", "killed", cwd=tmp_path).stdout == done.stdout
+    assert shell.run(f"{command} --out killed") == said
     assert path.read_bytes() == complete
 
 
@@ -136,22 +135,22 @@ def test_more_seeds_wherever_a_sweep_was_killed(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow("a sweep in processes of its own")
-def test_an_interrupt_keeps_what_is_done_and_another_sweep_is_refused(tmp_path: Path) -> None:
-    arguments = [*QUICK, "--seeds", "200", "--out", "out"]
-    process = start(arguments, tmp_path)
-    wait_for_records(tmp_path / "out" / "runs.jsonl", 2, process)
-    assert "another sweep is writing to out" in refused(*arguments, cwd=tmp_path)
+def test_an_interrupt_keeps_what_is_done_and_another_sweep_is_refused(shell: Shell) -> None:
+    command = f"{QUICK} --seeds 200 --out out"
+    process = start(command)
+    wait_for_records(OUT / "runs.jsonl", 2, process)
+    assert shell.run(command, 2) == ""
+    assert "another sweep is writing to out" in shell.err
     process.send_signal(signal.SIGINT)
     output, errors = process.communicate(timeout=300)
     assert (process.returncode, output) == (130, "")
     assert errors.split("\n") == ["", "sigmahat: interrupted", ""]
-    assert 2 <= len(records(tmp_path / "out" / "runs.jsonl")) < 200
+    assert 2 <= len(records(OUT / "runs.jsonl")) < 200
 
 
-def test_records_that_do_not_fit(tmp_path: Path) -> None:
-    arguments = [*QUICK, "--seeds", "2", "--out", "out"]
-    assert run(*arguments, cwd=tmp_path).returncode == 0
-    path = tmp_path / "out" / "runs.jsonl"
+def test_records_that_do_not_fit(shell: Shell) -> None:
+    command, path = f"{QUICK} --seeds 2 --out out", OUT / "runs.jsonl"
+    shell.run(command)
     good = path.read_bytes()
     for damaged, words in (
         (good.replace(b'"seed": 2', b'"seed": 1'), "line"),
@@ -159,41 +158,18 @@ def test_records_that_do_not_fit(tmp_path: Path) -> None:
         (b"\0" + good, "line 1: damaged; delete this file"),
     ):
         path.write_bytes(damaged)
-        assert words in refused(*arguments, cwd=tmp_path)
-        assert path.read_bytes() == damaged
+        assert words in shell.refused(command)
 
 
-def test_runs_that_fail_are_reported(tmp_path: Path) -> None:
+def test_runs_that_fail_are_reported(shell: Shell) -> None:
     # GIVEN an inertia that is negative, which the FMU refuses, for some seeds
-    done = run(
-        *QUICK, "--seeds", "6", "--set", "estimator.motor.B=normal(2.3e-5,5e-5)", "--out", "out",
-        cwd=tmp_path,
-    )  # fmt: skip
-    assert (done.returncode, done.stderr) == (0, "")
-    table = read(tmp_path / "out" / "sweep.parquet").table.to_pylist()
+    inertia = "'estimator.motor.B=normal(2.3e-5,5e-5)'"
+    said = shell.run(f"{QUICK} --seeds 6 --set {inertia} --out out")
+    assert shell.err == ""
+    table = read(OUT / "sweep.parquet").table.to_pylist()
     negative = [row["estimator.motor.B [kg.m2]"] < 0 for row in table]
     assert 0 < sum(negative) < 6
     assert [row["failure"] is not None for row in table] == negative
     assert [bool(np.isnan(row["mse [(N.m/rad)2]"])) for row in table] == negative
-    assert f"failed, the first with: {next(r['failure'] for r in table if r['failure'])}" in (
-        done.stdout
-    )
-
-
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (["--modality", "RESIDUL"], "did you mean 'RESIDUAL'?"),
-        (["--set", "plant.motor.D_theta"], "expected NAME=VALUES"),
-        (["--seeds", "0"], "--seeds"),
-        (["missing.toml"], "cannot read missing.toml"),
-        (["--set", "estimator.motor.B=uniform(-2,-1)"], "every run failed"),
-        (["--scheduler", "tcp://127.0.0.1:9"], "no Dask scheduler at tcp://127.0.0.1:9"),
-        (["--scheduler", "nonsense"], "start one with `dask scheduler`"),
-    ],
-)
-def test_bad_input(arguments: list[str], words: str, tmp_path: Path) -> None:
-    assert words in refused(
-        *QUICK[: 0 if "--modality" in arguments else 2], *arguments, cwd=tmp_path
-    )
-    assert list(tmp_path.iterdir()) == []
+    first = next(row["failure"] for row in table if row["failure"])
+    assert f"failed, the first with: {first}" in said
