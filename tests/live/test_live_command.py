@@ -25,11 +25,8 @@ needs_signals = pytest.mark.skipif(sys.platform == "win32", reason="Windows has 
 
 def nested(message: dict[str, Any]) -> bytes:
     """A message as JSON."""
-    arm = {
-        "motor": message["arm/motor"],
-        "link": [message["arm/link[0]"]],
-        "torque": message["arm/torque"],
-    }
+    motor, link, torque = (message[f"arm/{name}"] for name in ("motor", "link[0]", "torque"))
+    arm = {"motor": motor, "link": [link], "torque": torque}
     return json.dumps({"t": message["t"], "arm": arm}).encode()
 
 

@@ -121,9 +121,8 @@ def two_topics() -> Iterator[dict[str, float]]:
         yield from [each, link] if i % 2 == 0 else [each]
 
 
-TWO_TOPICS = CONFIGURATION.replace('"arm/link[0]"', '"arm/link[0]"\ntime = "t_link"').replace(
-    'column = "t"', 'column = "t"\nlongest_gap = 0.013'
-)
+TWO_TOPICS = CONFIGURATION.replace('"arm/link[0]"', '"arm/link[0]"\ntime = "t_link"')
+TWO_TOPICS = TWO_TOPICS.replace('column = "t"', 'column = "t"\nlongest_gap = 0.013')
 
 
 def test_ports_with_times_of_their_own(tmp_path: Path) -> None:

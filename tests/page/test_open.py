@@ -68,9 +68,8 @@ def test_from_an_empty_configuration_to_the_results(shell: Shell) -> None:
             assert place < 100  # on the first screen
             for each in (first, second):
                 assert each.complaints() == []
-                assert {urlsplit(url).netloc for url in each.requests()} == {
-                    urlsplit(page.address).netloc
-                }
+                asked = {urlsplit(url).netloc for url in each.requests()}
+                assert asked == {urlsplit(page.address).netloc}
                 wide, there = each.run("return [document.body.scrollWidth, innerWidth]")
                 assert wide <= there
         assert page.interrupt() == (0, "", "")
@@ -103,10 +102,8 @@ def test_nothing_is_lost_when_the_log_vanishes_and_at_the_end(tmp_path: Path) ->
     assert kept.read_text() == before
     draft = (tmp_path / "knee.draft.toml").read_text()
     assert "# mine" in draft
-    assert tomlkit.parse(draft).unwrap()["parameters"] == {
-        "motor": {"B": 2e-4},
-        "modality": "Model",
-    }
+    expected = {"motor": {"B": 2e-4}, "modality": "Model"}
+    assert tomlkit.parse(draft).unwrap()["parameters"] == expected
 
 
 def test_only_who_has_the_address_is_served(tmp_path: Path) -> None:

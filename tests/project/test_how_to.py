@@ -13,7 +13,10 @@ import pytest
 
 import fmi_master
 import sigmahat
+from command_line import Shell
 from controllers import run
+from recorded_logs import REGRESSION, awas_log, write_log
+from sigmahat.cli import cli
 from sigmahat.runs.scenario import T
 
 REPOSITORY = Path(__file__).parents[2]
@@ -102,6 +105,19 @@ def test_the_code_on_the_page_of_python_works() -> None:
     np.testing.assert_allclose(names["both"]["sigma"][:, -1], 1000, rtol=1e-3)
     run = names["run"]
     assert run.estimators["one"]["sigma"][-1] == pytest.approx(run.plant["sigma"][-1], rel=0.05)
+
+
+@pytest.mark.slow("replays logs five times, with --start-from and validate")
+def test_the_commands_and_the_program_of_the_page_on_joints_work(shell: Shell) -> None:
+    write_log(awas_log(1.0, 0.3, 3.0), Path("knee.csv"), REGRESSION)
+    write_log(awas_log(1.3, 0.3, 3.0, seed=2), Path("second.csv"))
+    (commands,) = blocks("joint.md", "sh")
+    for line in commands.splitlines():
+        program, name, *_ = line.split()
+        assert program == "sigmahat" and name in cli.commands
+        shell.run(line.partition("#")[0].removeprefix("sigmahat "))
+    assert Path("both/joint.ssv").is_file()
+    executed("joint.md")
 
 
 def test_a_copy_without_enumerations_is_the_same_fmu(page: dict[str, Any], tmp_path: Path) -> None:
