@@ -1,9 +1,9 @@
 /* A stiffness that changes (detail 15): two hypotheses predict each block, and the estimate follows the better
  * one.
  *
- *     0  the joint is as before: the information of all blocks
- *     1  the spring has changed since t: the same at t, but nothing is known about its columns, which are the
- *        first ones. What the data say about motor and friction is in the rows behind.
+ *     0  the joint is as before: the prior and all blocks
+ *     1  the spring has changed since t: the same at t, but of its columns, which are the first ones, only the
+ *        prior is known. What the data say about motor and friction is in the rows behind.
  */
 #include "constants.h"
 #include "regression.h"
@@ -12,7 +12,7 @@ void sh_change_start(sh_regression_state *state)
 {
     sh_change *change = &state->change;
 
-    sh_information_start(&change->changed, state->columns.size, SH_LEAST_INFORMATION);
+    sh_information_start(&change->changed, state->columns.size, 1);
     change->level = change->usual_misfit = 1;
     change->blocks = SH_LONGEST_TEST; /* it begins with the first block that can show a change */
     state->history.change_age = -1;
@@ -27,12 +27,13 @@ static void begin(sh_regression_state *state)
     sh_change *change = &state->change;
 
     change->changed = state->friction_drifts ? blocks->drifting : blocks->constant;
-    sh_information_restart(&change->changed, state->columns.spring, SH_LEAST_INFORMATION);
+    sh_information_restart(&change->changed, state->columns.spring, 1);
     change->evidence = change->blocks = 0;
 }
 
 /* The blocks are those of hypothesis 1, and so are the data: those of all samples contain some of behind t, which
- * contradict what they say about the motor. The next posterior follows.
+ * contradict what they say about the motor. The next posterior follows. It has the prior twice, as these data
+ * contain it; what the blocks say soon outweighs it.
  */
 static void adopt(sh_regression_state *state)
 {

@@ -88,7 +88,7 @@ const sh_column_kind sh_column_kinds[SH_COLUMN_KINDS] = {
 /* Half width of a dead zone or an element of hysteresis, or place of a knee, over range.phi [1]; else 0. If the
  * torque is symmetric, a knee at a place > 0 is on both sides.
  */
-static sh_real place_of(const sh_column *column, const sh_parameters *p)
+static sh_real width_or_place(const sh_column *column, const sh_parameters *p)
 {
     const sh_real first = p->range.knee > 0 ? p->range.knee : SH_POSSIBLE_KNEE,
                   second = p->range.knee_2;
@@ -150,7 +150,7 @@ static void add(column_list *list, const sh_parameters *p, int kind, int i, int 
 {
     const sh_real units[] = {1, p->prior.tau_e, p->prior.tau_e / p->range.phi,
                              p->prior.tau_coulomb};
-    sh_column column = {kind, i, j, 0, 0, 0};
+    sh_column column = {(short)kind, (short)i, (short)j, 0, 0, 0};
     const void *prior = (const char *)p + sh_column_kinds[kind].prior;
 
     column.prior = *(const sh_real *)prior * units[sh_column_kinds[kind].unit];
@@ -162,12 +162,12 @@ static void add(column_list *list, const sh_parameters *p, int kind, int i, int 
     }
     if (list->column != NULL) {
         /* Not the whole struct: its padding would bring bytes of the stack into a saved state. */
-        list->column[list->size].kind = kind;
-        list->column[list->size].i = i;
-        list->column[list->size].j = j;
+        list->column[list->size].kind = column.kind;
+        list->column[list->size].i = column.i;
+        list->column[list->size].j = column.j;
         list->column[list->size].prior = column.prior;
         list->column[list->size].unit = column.unit;
-        list->column[list->size].place = place_of(&column, p) * p->range.phi;
+        list->column[list->size].place = width_or_place(&column, p) * p->range.phi;
     }
     list->size += 1;
 }

@@ -13,8 +13,8 @@ void sh_blocks_start(sh_regression_state *state)
     const sh_filter_design *design = &state->signals.design;
     const int K = state->signals.decimation;
 
-    sh_information_start(&blocks->constant, state->columns.size, SH_LEAST_INFORMATION);
-    sh_information_start(&blocks->drifting, state->columns.size, SH_LEAST_INFORMATION);
+    sh_information_start(&blocks->constant, state->columns.size, 1);
+    sh_information_start(&blocks->drifting, state->columns.size, 1);
     sh_information_start(&blocks->recent, state->columns.size, 1);
     blocks->length = sh_floor(SH_BLOCK / ((sh_real)K * design->T) + (sh_real)0.5);
     blocks->length = sh_fmin(sh_fmax(blocks->length, SH_SHORTEST_BLOCK), SH_LONGEST_BLOCK);
@@ -35,8 +35,8 @@ void sh_blocks_interrupt(sh_blocks *blocks)
 
 static void forget_blocks(sh_blocks *blocks, sh_real factor)
 {
-    sh_information_forget(&blocks->constant, factor, SH_LEAST_INFORMATION);
-    sh_information_forget(&blocks->drifting, factor, SH_LEAST_INFORMATION);
+    sh_information_forget(&blocks->constant, factor, 1);
+    sh_information_forget(&blocks->drifting, factor, 1);
     blocks->count *= factor;
 }
 
@@ -132,8 +132,15 @@ static sh_real chance(sh_real N)
     return N + SH_CHANCE * sh_sqrt(2 * N);
 }
 
+/* Sum of the squared errors of blocks over their variances, with the estimate. */
+static sh_real squares_without_prior(const sh_information *blocks, const sh_regression_state *state)
+{
+    return sh_information_squares(blocks, state->beta) -
+           sh_sum_of_products(state->beta, state->beta, state->columns.size);
+}
+
 /* Reduced chi-square of the recent blocks, if it is beyond chance; else 0, and while friction or the
- * curve drifts, which these blocks do not contain. Their prior is subtracted.
+ * curve drifts, which these blocks do not contain.
  */
 static sh_real recent_misfit(const sh_regression_state *state, const sh_parameters *p)
 {
@@ -144,8 +151,7 @@ static sh_real recent_misfit(const sh_regression_state *state, const sh_paramete
     if (N < SH_FIRST_BLOCKS || state->friction_drifts || p->regression.drift > 0) {
         return 0;
     }
-    squares = sh_information_squares(&blocks->recent, state->beta) -
-              sh_sum_of_products(state->beta, state->beta, state->columns.size);
+    squares = squares_without_prior(&blocks->recent, state);
     return squares > chance(N) ? squares / N : 0;
 }
 
@@ -173,8 +179,8 @@ void sh_misfit_judge(sh_regression_state *state, const sh_parameters *p)
     if (!can_judge(state)) {
         return;
     }
-    q = sh_information_squares(state->friction_drifts ? &blocks->drifting : &blocks->constant,
-                               state->beta) /
+    q = squares_without_prior(state->friction_drifts ? &blocks->drifting : &blocks->constant,
+                              state) /
         (N - parameters / 2);
     t = chance(N) / N;
     state->misfit = sh_fmax(q, recent_misfit(state, p));

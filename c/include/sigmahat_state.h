@@ -117,8 +117,8 @@ typedef struct {
 
 /* A column of the regression. */
 typedef struct {
-    int kind;      /* of the table in columns.c */
-    int i, j;      /* power of the torque: its coefficient is eta[i][j]; damping: power j of the
+    short kind;    /* of the table in columns.c */
+    short i, j;    /* power of the torque: its coefficient is eta[i][j]; damping: power j of the
                       set-point; dead zone and hysteresis: half width i; else 0 */
     sh_real prior; /* std deviation of its coefficient, by which the column is multiplied */
     sh_real unit;  /* power of the torque: its coefficient times this is that of sh_estimate */
@@ -209,9 +209,9 @@ typedef struct {
 
 /* Means over blocks of samples, misfit.c. */
 typedef struct {
-    sh_information constant;     /* of blocks, parameters constant */
-    sh_information drifting;     /* of blocks, friction may drift */
-    sh_information recent;       /* of the last blocks, with the prior */
+    sh_information constant;     /* of the prior and blocks, parameters constant */
+    sh_information drifting;     /* the same, friction may drift */
+    sh_information recent;       /* of the prior and the last blocks */
     sh_real count, recent_count; /* effective number of blocks [1] */
     sh_real duration; /* of the blocks since data were last forgotten, as far as they count [s] */
     sh_real length;   /* rows of a block */

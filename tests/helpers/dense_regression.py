@@ -188,7 +188,7 @@ class Blocks:
         h = np.append(np.repeat(self.window, K), np.zeros(math.ceil(30 / (w * T))))
         filtered = [through(np.append(0.0, h), order, w, T) for order in (0, 2)]
         self.energy, self.energy_second = (float(np.sum(f**2) / np.sum(h**2)) for f in filtered)
-        self.all, self.walking = Information(n, LEAST), Information(n, LEAST)
+        self.all, self.walking = Information(n, 1), Information(n, 1)
         self.recent = Information(n, 1.0)
         self.count = self.recent_count = self.gained = 0.0
         self.rows: list[tuple[Long, float, float, float]] = []  # row, weight, factor, roughness
@@ -337,9 +337,10 @@ class Oracle:
         if not self.can_judge():
             return
         sums = blocks.walking if self.friction_drifts else blocks.all
-        whole = self.q = sums.squares(self.beta) / (N - len(self.live.chosen) / 2)
+        of_prior = float(self.beta @ self.beta)
+        whole = self.q = (sums.squares(self.beta) - of_prior) / (N - len(self.live.chosen) / 2)
         if recent >= 20 and not self.friction_drifts and self.p["regression.drift"] <= 0:
-            squares = blocks.recent.squares(self.beta) - float(self.beta @ self.beta)
+            squares = blocks.recent.squares(self.beta) - of_prior
             self.q = max(whole, squares / recent if squares > threshold(recent) else 0.0)
         self.factor = 1.0
         if self.p["regression.memory"] > 0:
