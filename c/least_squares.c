@@ -2,8 +2,8 @@
 
 #include <stddef.h>
 
+#include "pair.h"
 #include "real_math.h"
-#include "scalar_product.h"
 #include "ud_factor.h"
 
 /* Largest w rho and largest prediction error that are accepted. The update changes eta_i by at most
@@ -66,9 +66,12 @@ static sh_real sample_weight(int kind, sh_real factor, sh_real rho)
     return 1;
 }
 
-/* (25) for the sample that was projected last. */
-static int take(sh_least_squares *rls, sh_real w, sh_real rho, sh_real epsilon)
+int sh_least_squares_update(sh_least_squares *rls, int kind, sh_real factor, const sh_real *F,
+                            sh_real y, sh_innovation *innovation)
 {
+    const sh_real epsilon = prediction_error(rls, F, y);
+    const sh_real rho = sh_ud_factor_project(&rls->P, F); /* rho = F' P F, (14) */
+    const sh_real w = sample_weight(kind, factor, rho);
     const sh_real *PF;
 
     if (!(w * rho <= LARGEST) || !(sh_fabs(epsilon) <= LARGEST)) { /* also if not a number */
@@ -76,20 +79,6 @@ static int take(sh_least_squares *rls, sh_real w, sh_real rho, sh_real epsilon)
     }
     PF = sh_ud_factor_update(&rls->P, w);                        /* P -= a K F' P */
     sh_least_squares_move(rls, w * epsilon / (1 + w * rho), PF); /* eta += a K epsilon */
-    return 1;
-}
-
-int sh_least_squares_update(sh_least_squares *rls, int kind, sh_real factor, const sh_real *F,
-                            sh_real y, sh_innovation *innovation)
-{
-    const sh_real epsilon = prediction_error(rls, F, y);
-    const sh_real rho = sh_ud_factor_project(&rls->P, F); /* rho = F' P F, (14) */
-
-    const sh_real w = sample_weight(kind, factor, rho);
-
-    if (!take(rls, w, rho, epsilon)) {
-        return 0;
-    }
     innovation->epsilon = epsilon;
     innovation->rho = rho;
     innovation->variance = rho / (1 + w * rho);

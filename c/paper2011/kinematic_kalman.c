@@ -24,14 +24,9 @@ sh_real sh_measurement_variance(const sh_filter_parameters *filter, sh_real x_do
 void sh_kinematic_kalman_start(sh_kinematic_kalman *kalman, const sh_filter_parameters *filter,
                                sh_real z)
 {
-    kalman->z = z;
-    kalman->lag = 0;
-    kalman->x_dot = 0;
-    kalman->dx = 0;
-    kalman->dx_dot = 0;
-    kalman->P11 = filter->P_0;
-    kalman->P12 = 0;
-    kalman->P22 = filter->P_0;
+    const sh_kinematic_kalman start = {.z = z, .P11 = filter->P_0, .P22 = filter->P_0};
+
+    *kalman = start;
 }
 
 void sh_kinematic_kalman_step(sh_kinematic_kalman *kalman, const sh_filter_parameters *filter,

@@ -2,8 +2,8 @@
 #include "kinematic_kalman.h"
 #include "least_squares.h"
 #include "method.h"
+#include "pair.h"
 #include "real_math.h"
-#include "scalar_product.h"
 #include "torque_basis.h"
 #include "torque_residual.h"
 #include "ud_factor.h"
@@ -48,9 +48,8 @@ static void evaluate_regressors(const sh_paper2011_state *state, const sh_parame
 static void evaluate_paper2011(const sh_estimator *estimator, const sh_parameters *p, sh_real phi,
                                sh_real set_point, sh_point *point)
 {
-    sh_real F[SH_MAX_PARAMETERS] = {0}, dF[SH_MAX_PARAMETERS] = {0};
-
     const sh_paper2011_state *state = &estimator->method.paper2011;
+    sh_real F[SH_MAX_PARAMETERS] = {0}, dF[SH_MAX_PARAMETERS] = {0};
 
     sh_torque_basis(p->rls.symmetric, p->rls.n, p->rls.m, set_point, phi, F, dF);
     evaluate_regressors(state, p, F, dF, sh_ud_factor_variance(&state->rls.P, F), point);
@@ -122,12 +121,11 @@ static sh_real track(sh_paper2011_filters *state, const sh_parameters *p, const 
      */
     state->settling -= dt;
     if (dt * p->residual.K_I < 2) {
-        (void)sh_torque_residual_step(&state->residual, &p->motor, theta->dx, theta->dx_dot, z->tau,
-                                      p->residual.K_I, dt);
-    } else {
-        sh_torque_residual_resume(&state->residual, z->tau);
-        state->settling = 10 / p->residual.K_I;
+        return sh_torque_residual_step(&state->residual, &p->motor, theta->dx, theta->dx_dot,
+                                       z->tau, p->residual.K_I, dt);
     }
+    sh_torque_residual_resume(&state->residual, z->tau);
+    state->settling = 10 / p->residual.K_I;
     return p->motor.gamma * state->residual.r_e;
 }
 

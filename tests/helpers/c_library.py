@@ -22,7 +22,7 @@ FILE = f"libsigmahat_test_driver{'.dylib' if sys.platform == 'darwin' else '.so'
 REALS = ("double", "float")
 LONG = "_Float64x"
 """long double, for which glibc has functions by this name."""
-_WITHOUT_DECLARATIONS = ("constants.h", "real_math.h", "pair.h", "scalar_product.h")
+_WITHOUT_DECLARATIONS = ("constants.h", "real_math.h", "pair.h")
 """Headers with nothing but macros and inline functions. They include those of the C library, which
 cffi cannot read."""
 
