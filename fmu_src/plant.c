@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stddef.h>
+#include <string.h>
 
 #include "model.h"
 #include "noise.h"
@@ -133,9 +134,7 @@ static sh_status step(void *model, double t, double h, sh_instance *log)
             t, h, MAX_PERIODS, plant->samplePeriod);
         return SH_ERROR;
     }
-    for (i = 0; i < SH_PLANT_STATES; ++i) {
-        x[i] = plant->x[i];
-    }
+    (void)memcpy(x, plant->x, sizeof x);
     if (sh_radau_integrate(x, u, du, plant->p, h, &internal_step) == 0) {
         i = largest_input(u, u_end);
         sh_report(log, SH_ERROR,
@@ -146,9 +145,7 @@ static sh_status step(void *model, double t, double h, sh_instance *log)
                   fabs(u_end[i]) > fabs(u[i]) ? u_end[i] : u[i]);
         return SH_ERROR;
     }
-    for (i = 0; i < SH_PLANT_STATES; ++i) {
-        plant->x[i] = x[i];
-    }
+    (void)memcpy(plant->x, x, sizeof x);
     plant->h = internal_step;
     if (SH_PLANT_NORMALS > 0) {
         advance_noise(plant, periods);

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stddef.h>
+#include <string.h>
 
 #include "plant_functions.h"
 
@@ -118,18 +119,6 @@ static int are_held(const double *du)
     return 1;
 }
 
-/* F_i = f */
-static void repeat(const double *f, double (*F)[STATES])
-{
-    int i, j;
-
-    for (i = 0; i < STAGES; ++i) {
-        for (j = 0; j < STATES; ++j) {
-            F[i][j] = f[j];
-        }
-    }
-}
-
 /* F_i = f(x + Z_i) at the nodes of a step */
 static void evaluate_stages(const double *x, const double *u, const double *du, const double *p,
                             double h, double (*Z)[STATES], double (*F)[STATES])
@@ -168,8 +157,10 @@ static int solve_stages(const double *x, const double *u, const double *du, cons
     for (iteration = 0; iteration < MAX_NEWTON_ITERATIONS; ++iteration) {
         const double previous = change;
 
-        if (iteration == 0 && held) {
-            repeat(f, F); /* all stages are still at x */
+        if (iteration == 0 && held) { /* all stages are still at x */
+            for (i = 0; i < STAGES; ++i) {
+                (void)memcpy(F[i], f, sizeof F[i]);
+            }
         } else {
             evaluate_stages(x, u, du, p, h, Z, F);
         }
@@ -306,9 +297,7 @@ int sh_radau_integrate(double *x, const double *u, const double *du, const doubl
         /* The error estimate falls with the fourth power of the step. */
         *h = step * fmin(8.0, fmax(0.2, 0.9 / sqrt(sqrt(error))));
         if (error <= 1.0) {
-            for (j = 0; j < STATES; ++j) {
-                x[j] = x_new[j];
-            }
+            (void)memcpy(x, x_new, sizeof x_new);
             elapsed += step;
             ++steps;
             owed = followers;

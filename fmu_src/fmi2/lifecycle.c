@@ -1,7 +1,6 @@
 /* FMI 2.0: inquiry, logging, creation, the course of a simulation, and the state of the FMU. */
 #include "fmi2Functions.h"
 #include "log.h"
-#include "saved_state.h"
 #include "simulation.h"
 
 const char *fmi2GetTypesPlatform(void)

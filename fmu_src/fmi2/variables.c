@@ -1,7 +1,6 @@
 /* FMI 2.0: reading and writing variables, one by one. */
 #include "access.h"
 #include "fmi2Functions.h"
-#include "value.h"
 
 const char *sh_type_name(sh_type type)
 {

@@ -2,29 +2,19 @@
 
 #include <math.h>
 #include <stdbool.h>
-#include <stdio.h>
-
-#include "value.h"
-
-/* Writes the allowed range of a variable, "[0, 1]" or "(-inf, inf)". */
-static void write_range(char *text, size_t size, const sh_variable *variable)
-{
-    (void)snprintf(text, size, "%c%.9g, %.9g%c", isfinite(variable->min) ? '[' : '(', variable->min,
-                   variable->max, isfinite(variable->max) ? ']' : ')');
-}
 
 int sh_accepts(sh_instance *instance, const sh_variable *variable, double value,
                const char *function)
 {
-    char range[64];
+    const double min = variable->min, max = variable->max;
 
-    if (!sh_is_parameter(variable) ||
-        (isfinite(value) && value >= variable->min && value <= variable->max)) {
+    if (!sh_is_parameter(variable) || (isfinite(value) && value >= min && value <= max)) {
         return 1;
     }
-    write_range(range, sizeof range, variable);
-    sh_report(instance, SH_ERROR, "%s: parameter %s = %.9g is out of its range %s.", function,
-              variable->name, value, range);
+    /* "[0, 1]" or "(-inf, inf)" */
+    sh_report(instance, SH_ERROR, "%s: parameter %s = %.9g is out of its range %c%.9g, %.9g%c.",
+              function, variable->name, value, isfinite(min) ? '[' : '(', min, max,
+              isfinite(max) ? ']' : ')');
     return 0;
 }
 
@@ -70,7 +60,7 @@ static int may_be_set(sh_instance *instance, const sh_variable *variable, const 
     static const struct {
         unsigned states;
         const char *rule;
-    } RULES[] = {
+    } RULES[SH_ROLE_TUNABLE + 1] = {
         [SH_ROLE_OUTPUT] = {0, "an output"},
         [SH_ROLE_GUESS] = {SH_INSTANTIATED, "an output"}, /* of its initial value, overwritten */
         [SH_ROLE_FIXED] = {SH_INSTANTIATED | SH_INITIALIZATION,

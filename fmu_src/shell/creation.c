@@ -5,7 +5,6 @@
 
 #include "log.h"
 #include "simulation.h"
-#include "value.h"
 
 static const char *state_name(sh_state state)
 {

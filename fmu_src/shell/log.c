@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+/* The first ones are those of an sh_status. */
 static const struct {
     const char *name;
     unsigned category;
@@ -12,12 +13,6 @@ static const struct {
              {"logStatusDiscard", SH_LOG_DISCARD},
              {"logStatusError", SH_LOG_ERROR},
              {"logAll", SH_LOG_ALL}};
-
-/* Index in KNOWN of the category of a status. */
-static size_t place_of(sh_status status)
-{
-    return status < SH_ERROR ? (size_t)status : (size_t)SH_ERROR;
-}
 
 /* Bytes of the UTF-8 character that begins here, or 0 if none does (RFC 3629). */
 static size_t utf8_length(const unsigned char *s)
@@ -70,18 +65,17 @@ int sh_make_utf8(char *text)
 
 void sh_report(sh_instance *instance, sh_status status, const char *format, ...)
 {
-    const size_t place = place_of(status);
     char text[512];
     va_list arguments;
 
-    if (instance->importer.logger == NULL || !(instance->categories & KNOWN[place].category)) {
+    if (instance->importer.logger == NULL || !(instance->categories & KNOWN[status].category)) {
         return;
     }
     va_start(arguments, format);
     (void)vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
     (void)sh_make_utf8(text); /* may contain text of the importer, or be cut inside a character */
-    sh_deliver(instance, status, KNOWN[place].name, text);
+    sh_deliver(instance, status, KNOWN[status].name, text);
 }
 
 sh_status sh_find_categories(sh_instance *instance, size_t count, const char *const categories[],

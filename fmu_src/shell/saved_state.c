@@ -1,9 +1,168 @@
-/* Saving, restoring and serialising the state of the FMU, the same in every version of FMI. */
-#include "saved_state.h"
-
+/* Saving, restoring and serialising the state of the FMU, the same in every version of FMI.
+ *
+ * A saved state is a block of bytes: a header, then the model's struct. It contains no pointer. A
+ * serialised state is the same bytes. Version, GUID, length and checksum show whether the bytes are
+ * damaged or of another FMU.
+ */
+#include <stdint.h>
 #include <string.h>
 
-#include "state_block.h"
+#include "simulation.h"
+
+enum {
+    GUID_LENGTH = 64,
+    STATE_VERSION = 18 /* to be raised with every change of a model's struct: the GUID changes
+                         with the variables only */
+};
+
+typedef struct {
+    char magic[8];
+    uint32_t version;
+    uint32_t state; /* sh_state */
+    char guid[GUID_LENGTH];
+    double time, stop_time, steps, previous_step;
+    uint64_t outputs_stale;
+    uint64_t checksum; /* of all bytes of the block, taken with 0 in this place */
+} state_header;
+
+static const char MAGIC[8] = {'s', 'i', 'g', 'm', 'a', 'h', 'a', 't'};
+
+static size_t block_size(void)
+{
+    return sizeof(state_header) + sh_fmu_model.size;
+}
+
+static state_header header_of(const void *block)
+{
+    state_header header;
+
+    (void)memcpy(&header, block, sizeof header);
+    return header;
+}
+
+/* FNV-1a, 64 bit: datatracker.ietf.org/doc/html/draft-eastlake-fnv */
+static uint64_t checksum(const unsigned char *block, size_t size)
+{
+    uint64_t hash = UINT64_C(14695981039346656037);
+    const size_t hole = offsetof(state_header, checksum);
+    size_t i;
+
+    for (i = 0; i < size; ++i) {
+        const unsigned char byte = i >= hole && i < hole + sizeof hash ? 0 : block[i];
+        hash = (hash ^ byte) * UINT64_C(1099511628211);
+    }
+    return hash;
+}
+
+/* Writes the state of an instance to a block, without its checksum. */
+static void write_block(const sh_instance *instance, void *block)
+{
+    state_header header;
+
+    (void)memset(&header, 0, sizeof header);
+    (void)memcpy(header.magic, MAGIC, sizeof MAGIC);
+    header.version = STATE_VERSION;
+    header.state = (uint32_t)instance->state;
+    (void)strncpy(header.guid, sh_fmu_model.guid, GUID_LENGTH - 1);
+    header.time = instance->time;
+    header.stop_time = instance->stop_time;
+    header.steps = instance->steps;
+    header.previous_step = instance->previous_step;
+    header.outputs_stale = instance->outputs_stale != 0;
+    (void)memcpy(block, &header, sizeof header);
+    (void)memcpy((char *)block + sizeof header, instance->model, sh_fmu_model.size);
+}
+
+/* NULL if the block is a state of this FMU, else the defect as text. Reads only the header. */
+static const char *defect_of_block(const void *block)
+{
+    const state_header header = header_of(block);
+
+    if (memcmp(header.magic, MAGIC, sizeof MAGIC) != 0) {
+        return "is not a state of a sigmahat FMU";
+    }
+    if (header.version != STATE_VERSION) {
+        return "has another version of the format";
+    }
+    if (strncmp(header.guid, sh_fmu_model.guid, GUID_LENGTH) != 0) {
+        return "is of another FMU or another version of it";
+    }
+    return NULL;
+}
+
+/* Copies the state of the simulation, without the model, from the header. */
+static void read_header(sh_instance *instance, const void *block)
+{
+    const state_header header = header_of(block);
+
+    instance->state = (sh_state)header.state;
+    instance->time = header.time;
+    instance->stop_time = header.stop_time;
+    instance->steps = header.steps;
+    instance->previous_step = header.previous_step;
+    instance->outputs_stale = header.outputs_stale != 0;
+    instance->parameters_unchecked = 1;        /* the next step checks the parameters */
+    instance->slopes_end = sh_fmu_model.count; /* the state may have slopes */
+}
+
+/* NULL if the bytes are a block without a defect, with its checksum; else the defect as text, such
+ * as "is truncated".
+ */
+static const char *defect_of_bytes(const void *bytes, size_t size)
+{
+    const char *defect;
+
+    if (size < sizeof(state_header)) {
+        return "is truncated";
+    }
+    defect = defect_of_block(bytes);
+    if (defect != NULL) {
+        return defect;
+    }
+    if (size != block_size()) {
+        return "is truncated or too long";
+    }
+    if (header_of(bytes).checksum != checksum(bytes, size)) {
+        return "is damaged: its checksum does not match";
+    }
+    return NULL;
+}
+
+static int is_state(sh_state state)
+{
+    return state == SH_INSTANTIATED || state == SH_INITIALIZATION || state == SH_STEP ||
+           state == SH_TERMINATED;
+}
+
+/* Whether the next step is possible without an initialisation of the model before. */
+static int is_initialized(const sh_instance *shown)
+{
+    return shown->state == SH_STEP || (shown->state == SH_INITIALIZATION && !shown->outputs_stale);
+}
+
+/* 1 if an instance can continue from a block from outside; else 0, after a message. A checksum does
+ * not show whether somebody made the bytes on purpose.
+ */
+static int is_sound(const sh_instance *instance, void *block, const char *function)
+{
+    sh_instance shown = *instance; /* with the model in the block */
+    size_t i;
+
+    read_header(&shown, block);
+    shown.model = (char *)block + sizeof(state_header);
+    for (i = 0; i < sh_fmu_model.count; ++i) {
+        const sh_variable *variable = &sh_fmu_model.variables[i];
+        if (!sh_accepts(&shown, variable, sh_read(&shown, variable), function)) {
+            return 0;
+        }
+    }
+    if (is_state(shown.state) && (!is_initialized(&shown) || sh_fmu_model.is_state(shown.model))) {
+        return 1;
+    }
+    sh_report(&shown, SH_ERROR, "%s: the state contains values that this FMU never saves.",
+              function);
+    return 0;
+}
 
 sh_status sh_save_state(void *handle, void **state, const char *function)
 {
@@ -14,12 +173,12 @@ sh_status sh_save_state(void *handle, void **state, const char *function)
         return SH_ERROR;
     }
     /* The importer may pass a state from an earlier call, to be overwritten. */
-    block = *state != NULL ? *state : sh_allocate(&instance->importer, sh_block_size());
+    block = *state != NULL ? *state : sh_allocate(&instance->importer, block_size());
     if (block == NULL) {
         sh_report(instance, SH_ERROR, "%s: out of memory.", function);
         return SH_ERROR;
     }
-    sh_block_write(instance, block);
+    write_block(instance, block);
     *state = block;
     return SH_OK;
 }
@@ -32,12 +191,13 @@ sh_status sh_restore_state(void *handle, void *state, const char *function)
     if (instance == NULL || !sh_has(instance, state, function, "FMUState")) {
         return SH_ERROR;
     }
-    what = sh_block_defect(state);
+    what = defect_of_block(state);
     if (what != NULL) {
         sh_report(instance, SH_ERROR, "%s: the state %s.", function, what);
         return SH_ERROR;
     }
-    sh_block_read(instance, state);
+    read_header(instance, state);
+    (void)memcpy(instance->model, (const char *)state + sizeof(state_header), sh_fmu_model.size);
     return SH_OK;
 }
 
@@ -63,7 +223,7 @@ sh_status sh_state_size(void *handle, const void *state, size_t *size, const cha
         !sh_has(instance, size, function, "size")) {
         return SH_ERROR;
     }
-    *size = sh_block_size();
+    *size = block_size();
     return SH_OK;
 }
 
@@ -71,18 +231,21 @@ sh_status sh_serialize_state(void *handle, const void *state, void *bytes, size_
                              const char *function)
 {
     sh_instance *instance = sh_enter(handle, SH_ANY, function);
+    state_header header;
 
     if (instance == NULL || !sh_has(instance, state, function, "FMUState") ||
         !sh_has(instance, bytes, function, "serializedState")) {
         return SH_ERROR;
     }
-    if (size < sh_block_size()) {
+    if (size < block_size()) {
         sh_report(instance, SH_ERROR, "%s: size = %lu bytes; expected %lu.", function,
-                  (unsigned long)size, (unsigned long)sh_block_size());
+                  (unsigned long)size, (unsigned long)block_size());
         return SH_ERROR;
     }
-    (void)memcpy(bytes, state, sh_block_size());
-    sh_block_sign(bytes);
+    (void)memcpy(bytes, state, block_size());
+    header = header_of(bytes);
+    header.checksum = checksum(bytes, block_size());
+    (void)memcpy(bytes, &header, sizeof header);
     return SH_OK;
 }
 
@@ -97,19 +260,19 @@ sh_status sh_deserialize_state(void *handle, const void *bytes, size_t size, voi
         !sh_has(instance, state, function, "FMUState")) {
         return SH_ERROR;
     }
-    what = sh_bytes_defect(bytes, size);
+    what = defect_of_bytes(bytes, size);
     if (what != NULL) {
         sh_report(instance, SH_ERROR, "%s: the state (%lu bytes) %s.", function,
                   (unsigned long)size, what);
         return SH_ERROR;
     }
-    block = sh_allocate(&instance->importer, sh_block_size());
+    block = sh_allocate(&instance->importer, block_size());
     if (block == NULL) {
         sh_report(instance, SH_ERROR, "%s: out of memory.", function);
         return SH_ERROR;
     }
-    (void)memcpy(block, bytes, sh_block_size());
-    if (!sh_block_is_sound(instance, block, function)) {
+    (void)memcpy(block, bytes, block_size());
+    if (!is_sound(instance, block, function)) {
         sh_release(&instance->importer, block);
         return SH_ERROR;
     }

@@ -72,4 +72,17 @@ sh_status sh_check_parameters(sh_instance *instance);
  */
 sh_status sh_initialize(sh_instance *instance);
 
+/* Saving, restoring and serialising the state of the FMU. A function that fails returns SH_ERROR after
+ * a message, and changes nothing. sh_save_state writes the state to *state, or to new memory if *state
+ * is NULL; the serialised state has *size bytes.
+ */
+sh_status sh_save_state(void *handle, void **state, const char *function);
+sh_status sh_restore_state(void *handle, void *state, const char *function);
+sh_status sh_free_state(void *handle, void **state, const char *function);
+sh_status sh_state_size(void *handle, const void *state, size_t *size, const char *function);
+sh_status sh_serialize_state(void *handle, const void *state, void *bytes, size_t size,
+                             const char *function);
+sh_status sh_deserialize_state(void *handle, const void *bytes, size_t size, void **state,
+                               const char *function);
+
 #endif

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 
 #include "shell_invariant.h"
-#include "state_block.h"
+#include "simulation.h"
 
 #define CASE(number, ...)                                                                          \
     case number:                                                                                   \
@@ -84,8 +84,9 @@ static void *any_state(course here)
 static void *saved_state(void)
 {
     static char block[HEADER + sizeof(MODEL)];
+    void *state = block;
 
-    sh_block_write(&instance, block);
+    (void)sh_save_state(&instance, &state, "proof");
     Frama_C_make_unknown((char *)&model, sizeof model); /* it has gone on since */
     return block;
 }

@@ -35,7 +35,8 @@ static void call(int which, course here)
              fmi2SerializedFMUstateSize(&instance, state, OR_NULL(&size));
              fmi2FreeFMUstate(&instance, OR_NULL(&state)));
         CASE(16, fmi2SetFMUstate(&instance, OR_NULL(saved_state())));
-        CASE(17, fmi2DeSerializeFMUstate(&instance, any_state(here), sh_block_size(), &state));
+        CASE(17,
+             fmi2DeSerializeFMUstate(&instance, any_state(here), HEADER + sizeof(MODEL), &state));
     default:
         fmi2SerializeFMUstate(&instance, any_state(here), any_block(), any_size());
         fmi2SerializeFMUstate(&instance, any_state(here), NULL, any_size());

@@ -65,7 +65,8 @@ static void call(int which, course here)
              fmi3SerializedFMUStateSize(&instance, state, OR_NULL(&size));
              fmi3FreeFMUState(&instance, OR_NULL(&state)));
         CASE(8, fmi3SetFMUState(&instance, OR_NULL(saved_state())));
-        CASE(9, fmi3DeserializeFMUState(&instance, any_state(here), sh_block_size(), &state));
+        CASE(9,
+             fmi3DeserializeFMUState(&instance, any_state(here), HEADER + sizeof(MODEL), &state));
         CASE(10, fmi3SerializeFMUState(&instance, any_state(here), any_block(), any_size());
              fmi3SerializeFMUState(&instance, any_state(here), NULL, any_size()));
     default:

@@ -1,9 +1,10 @@
 /* The de-serialiser: any bytes of any length, then the state that they make, then a step. */
 #include <stdlib.h>
 
-#include "saved_state.h"
 #include "shell_invariant.h"
-#include "state_block.h"
+#include "simulation.h"
+
+enum { SIZE = HEADER + sizeof model }; /* of a saved state */
 
 static const sh_importer NONE = {NULL, NULL, NULL, NULL};
 static const sh_importer OWN = {NULL, NULL, allocate, release};
@@ -22,7 +23,7 @@ static void of_another_size(size_t length, size_t least, size_t most)
 /* A state of the right size. Where its simulation stands is given; the rest may be anything. */
 static void *block_of(unsigned state, int outputs_stale)
 {
-    return with_course(any_bytes(sh_block_size()), state, outputs_stale);
+    return with_course(any_bytes(SIZE), state, outputs_stale);
 }
 
 static void of_course(course here, sh_importer importer)
@@ -31,7 +32,7 @@ static void of_course(course here, sh_importer importer)
     void *state = NULL;
 
     any_instance(course_of(0), importer);
-    if (sh_deserialize_state(&instance, bytes, sh_block_size(), &state, "proof") != SH_OK) {
+    if (sh_deserialize_state(&instance, bytes, SIZE, &state, "proof") != SH_OK) {
         return;
     }
     if (sh_restore_state(&instance, state, "proof") == SH_OK) {
@@ -51,8 +52,8 @@ static void of_no_course(unsigned state)
     void *made = NULL;
 
     any_instance(course_of(0), NONE);
-    if (sh_deserialize_state(&instance, block_of(state, any_choice()), sh_block_size(), &made,
-                             "proof") == SH_OK) {
+    if (sh_deserialize_state(&instance, block_of(state, any_choice()), SIZE, &made, "proof") ==
+        SH_OK) {
         //@ assert refused: \false;
     }
 }
@@ -62,8 +63,8 @@ int main(void)
     int i;
 
     of_another_size(0, 0, HEADER - 1);
-    of_another_size(HEADER, HEADER, HEADER + sizeof model - 1);
-    of_another_size(HEADER, HEADER + sizeof model + 1, SIZE_MAX);
+    of_another_size(HEADER, HEADER, SIZE - 1);
+    of_another_size(HEADER, SIZE + 1, SIZE_MAX);
     //@ loop unroll 16;
     for (i = 0; i < COURSES / 2; ++i) { /* the other half differs in parameters_unchecked only */
         of_course(course_of(i), i % 2 == 0 ? NONE : OWN);

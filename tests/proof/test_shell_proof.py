@@ -18,7 +18,7 @@ PROOF = REPOSITORY / "tests" / "proof"
 SOURCES = REPOSITORY / "fmu_src"
 SHELL = SOURCES / "shell"
 FMI_HEADERS = Path(fmpy.__file__).parent / "c-code"
-LENGTH_CHECK = """    if (size != sh_block_size()) {
+LENGTH_CHECK = """    if (size != block_size()) {
         return "is truncated or too long";
     }
 """
@@ -41,7 +41,7 @@ MODELS = {
 }
 # Functions after which Eva keeps failure and success apart.
 OUTCOMES = """
-sh_allocate malloc sh_check_parameters is_state sh_bytes_defect sh_block_is_sound sh_block_defect
+sh_allocate malloc sh_check_parameters is_state defect_of_bytes is_sound defect_of_block
 sh_deserialize_state sh_restore_state sh_enter sh_has is_initialized sh_initialize any_choice
 importer_allocates sh_end_initialization sh_create sh_set_up sh_begin_initialization
 """
@@ -132,9 +132,9 @@ def test_any_bytes_as_the_state_of_an_estimator_are_harmless(build: Path) -> Non
 @slow
 def test_the_proof_finds_a_length_that_is_not_checked(build: Path, tmp_path: Path) -> None:
     """GIVEN a shell that compares no length, THEN the proof finds reads beyond the bytes."""
-    shell = with_fault(SHELL, tmp_path / "shell", "state_block.c", LENGTH_CHECK)
+    shell = with_fault(SHELL, tmp_path / "shell", "saved_state.c", LENGTH_CHECK)
     alarms = alarms_of(build, "shell_states.c", shell=shell)
-    assert any("state_block.c" in a and "out of bounds read" in a for a in alarms)
+    assert any("saved_state.c" in a and "out of bounds read" in a for a in alarms)
     assert any("saved_state.c" in a and "valid_src" in a for a in alarms)
 
 
