@@ -232,8 +232,9 @@ static double estimate_error(double (*Z)[STATES], const double *f, const double 
     return size;
 }
 
-/* One step as sh_radau_step, with factors for its length. Returns the part of the error that is
- * left after `followers` more steps of this length.
+/* One step from x to x_new, with factors for its length h. Returns the part of its error that is left
+ * after `followers` more steps of this length, as a multiple of the allowed error, the largest over
+ * the states; infinite or not a number without a solution.
  */
 static double take(const double *x, const double *u, const double *du, const double *p, double h,
                    int followers, const double *factors, double *x_new)
@@ -250,15 +251,6 @@ static double take(const double *x, const double *u, const double *du, const dou
         x_new[j] = x[j] + Z[STAGES - 1][j];
     }
     return solved ? estimate_error(Z, f, weight, h, followers, factors) : INFINITY;
-}
-
-double sh_radau_step(const double *x, const double *u, const double *du, const double *p, double h,
-                     double *x_new)
-{
-    double factors[SH_PLANT_FACTORS];
-
-    factorize(x, u, p, h, factors);
-    return take(x, u, du, p, h, 0, factors, x_new);
 }
 
 int sh_radau_attempts(double duration)

@@ -8,17 +8,9 @@
 #ifndef SH_RADAU_H
 #define SH_RADAU_H
 
-/* One step of length h > 0 from x to x_new, without error control.
- *
- * Returns the estimated error as a multiple of the allowed error, the largest over the
- * states; infinite or not a number without a solution. The allowed error is
- * 1e-8 (scale + |x|), with the scale of the plant for each state.
- */
-double sh_radau_step(const double *x, const double *u, const double *du, const double *p, double h,
-                     double *x_new);
-
-/* Advances x by duration > 0 in steps, with the allowed error at the end of the duration. A motion
- * that decays before the end is resolved only as far as this motion changes x at the end.
+/* Advances x by duration > 0 in steps, with the allowed error at the end of the duration: for each
+ * state 1e-8 (scale + |x|), with the scale of the plant. A motion that decays before the end is
+ * resolved only as far as this motion changes x at the end.
  *
  * *h in: the step to try first, infinite if unknown; out: the step to try first after this
  * duration.

@@ -7,7 +7,8 @@
  */
 static const sh_real AT_REST = (sh_real)1e-30;
 
-sh_real sh_measurement_variance(const sh_filter_parameters *filter, sh_real x_dot, sh_real w_s)
+/* R at a velocity, (11) [rad2]; V_min for an encoder without quantisation, with either weighting. */
+static sh_real measurement_variance(const sh_filter_parameters *filter, sh_real x_dot, sh_real w_s)
 {
     const sh_real speed = sh_fabs(x_dot);
     sh_real relative;
@@ -52,7 +53,7 @@ void sh_kinematic_kalman_step(sh_kinematic_kalman *kalman, const sh_filter_param
     P22 = kalman->P22 + filter->V_a * (dt * dt);
 
     R = filter->kind == SH_FILTER_KALMAN ? filter->R
-                                         : sh_measurement_variance(filter, kalman->x_dot, w_s);
+                                         : measurement_variance(filter, kalman->x_dot, w_s);
 
     /* (10): K = P H' / S, xi += K (z - H xi), P -= K H P with H = (1 0) */
     S = P11 + R;

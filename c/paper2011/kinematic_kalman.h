@@ -7,15 +7,6 @@
 
 #include "sigmahat.h"
 
-/* Measurement variance R at a velocity, (11) [rad2].
- *
- * filter  settings, with the weighting
- * x_dot   velocity [rad/s]
- * w_s     velocity of one count per sample, (2 pi / counts) / T [rad/s]; 0 for
- *         an encoder without quantisation, whose R is V_min with either weighting
- */
-sh_real sh_measurement_variance(const sh_filter_parameters *filter, sh_real x_dot, sh_real w_s);
-
 /* Starts the filter at a measured position z [rad]: zero velocity, covariance P_0 I. */
 void sh_kinematic_kalman_start(sh_kinematic_kalman *kalman, const sh_filter_parameters *filter,
                                sh_real z);
@@ -24,7 +15,8 @@ void sh_kinematic_kalman_start(sh_kinematic_kalman *kalman, const sh_filter_para
  *
  * z    measured position [rad], finite
  * dt   time since the last sample [s], > 0
- * w_s  velocity of one count per sample period [rad/s], >= 0
+ * w_s  velocity of one count per sample period, (2 pi / counts) / T [rad/s]; 0 for an encoder
+ *      without quantisation
  */
 void sh_kinematic_kalman_step(sh_kinematic_kalman *kalman, const sh_filter_parameters *filter,
                               sh_real z, sh_real dt, sh_real w_s);

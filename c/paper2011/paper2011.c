@@ -124,7 +124,7 @@ static sh_real track(sh_paper2011_filters *state, const sh_parameters *p, const 
         return sh_torque_residual_step(&state->residual, &p->motor, theta->dx, theta->dx_dot,
                                        z->tau, p->residual.K_I, dt);
     }
-    sh_torque_residual_resume(&state->residual, z->tau);
+    state->residual.tau = z->tau;
     state->settling = 10 / p->residual.K_I;
     return p->motor.gamma * state->residual.r_e;
 }

@@ -3,11 +3,6 @@
 void sh_torque_residual_start(sh_torque_residual *residual, sh_real tau)
 {
     residual->r_e = 0;
-    sh_torque_residual_resume(residual, tau);
-}
-
-void sh_torque_residual_resume(sh_torque_residual *residual, sh_real tau)
-{
     residual->tau = tau;
 }
 
@@ -21,6 +16,6 @@ sh_real sh_torque_residual_step(sh_torque_residual *residual, const sh_motor_par
         K_I * (motor->gamma * (motor->B * dtheta_dot + motor->D_theta * dtheta) - impulse);
 
     residual->r_e = (2 - T * K_I) / (2 + T * K_I) * residual->r_e + 2 * change / (2 + T * K_I);
-    sh_torque_residual_resume(residual, tau);
+    residual->tau = tau;
     return motor->gamma * residual->r_e;
 }

@@ -11,11 +11,6 @@
 /* Starts the residual at a sample: r_e = 0 and I_tau = 0. */
 void sh_torque_residual_start(sh_torque_residual *residual, sh_real tau);
 
-/* Takes a sample as the last one without integrating over the time before it: r_e does not change.
- * For use after samples were lost.
- */
-void sh_torque_residual_resume(sh_torque_residual *residual, sh_real tau);
-
 /* Advances the residual by one sample, (8), and returns the estimate gamma r_e of the flexibility
  * torque [N.m].
  *
