@@ -1,7 +1,5 @@
 """gcc with its analyser, clang-tidy and cppcheck find nothing in the C code of the build tree."""
 
-from __future__ import annotations
-
 import json
 import os
 import shlex
