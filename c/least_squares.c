@@ -66,12 +66,9 @@ static sh_real sample_weight(int kind, sh_real factor, sh_real rho)
     return 1;
 }
 
-int sh_least_squares_update(sh_least_squares *rls, int kind, sh_real factor, const sh_real *F,
-                            sh_real y, sh_innovation *innovation)
+/* (25) for the sample that was projected last. */
+static int take(sh_least_squares *rls, sh_real w, sh_real rho, sh_real epsilon)
 {
-    const sh_real epsilon = prediction_error(rls, F, y);
-    const sh_real rho = sh_ud_factor_project(&rls->P, F); /* rho = F' P F, (14) */
-    const sh_real w = sample_weight(kind, factor, rho);
     const sh_real *PF;
 
     if (!(w * rho <= LARGEST) || !(sh_fabs(epsilon) <= LARGEST)) { /* also if not a number */
@@ -79,6 +76,19 @@ int sh_least_squares_update(sh_least_squares *rls, int kind, sh_real factor, con
     }
     PF = sh_ud_factor_update(&rls->P, w);                        /* P -= a K F' P */
     sh_least_squares_move(rls, w * epsilon / (1 + w * rho), PF); /* eta += a K epsilon */
+    return 1;
+}
+
+int sh_least_squares_update(sh_least_squares *rls, int kind, sh_real factor, const sh_real *F,
+                            sh_real y, sh_innovation *innovation)
+{
+    const sh_real epsilon = prediction_error(rls, F, y);
+    const sh_real rho = sh_ud_factor_project(&rls->P, F); /* rho = F' P F, (14) */
+    const sh_real w = sample_weight(kind, factor, rho);
+
+    if (!take(rls, w, rho, epsilon)) {
+        return 0;
+    }
     innovation->epsilon = epsilon;
     innovation->rho = rho;
     innovation->variance = rho / (1 + w * rho);
