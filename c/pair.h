@@ -11,14 +11,9 @@
 
 #include <string.h>
 
-#include "sigmahat.h"
+#include "real_math.h"
 
-#define SH_IS_double 1
-#define SH_IS_float 0
-#define SH_IS_TYPE(type) SH_IS_##type
-#define SH_IS(type) SH_IS_TYPE(type)
-
-#if SH_IS(SH_REAL) && defined __GNUC__ && (defined __SSE2__ || defined __aarch64__)
+#if SH_FOR(SH_REAL, 1, 0) && defined __GNUC__ && (defined __SSE2__ || defined __aarch64__)
 
 typedef sh_real sh_pair __attribute__((vector_size(2 * sizeof(sh_real))));
 
