@@ -14,7 +14,7 @@ from recordings import one_seed
 from sigmahat.paper.figures.catalogue import FIGURES
 from sigmahat.paper.reproduction import Result, conditions, table, write_series, write_table
 from sigmahat.paper.scenarios import SCENARIOS
-from sigmahat.plotting.save import save
+from sigmahat.plotting.figure import save
 from sigmahat.runs.metrics import Indices
 
 ROWS = ["MODEL", "SENSOR", "RESIDUAL", "MODEL-measured"]

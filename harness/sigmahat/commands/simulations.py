@@ -48,7 +48,7 @@ def reproduce(scenario: str, seeds: int, out: Path | None) -> None:
         with common.progress("Running", progress_length(chosen, numbers)) as bar:
             result = reproduce(chosen, numbers, progress=bar.update)
         from sigmahat.paper.figures.catalogue import FIGURES
-        from sigmahat.plotting.save import save
+        from sigmahat.plotting.figure import save
 
         with common.progress("Drawing", len(chosen.figures)) as bar:
             for title in chosen.figures:
@@ -103,7 +103,7 @@ def _methods(seeds: int, jobs: int | None, out: Path) -> None:
         with common.progress("Running", len(JOINTS) * seeds) as bar:
             rows = compare(JOINTS, range(1, seeds + 1), jobs, progress=bar.update)
         from sigmahat.compare.figure import draw
-        from sigmahat.plotting.save import save
+        from sigmahat.plotting.figure import save
 
         save(draw, rows, folder / "compare")
         write(rows, seeds, folder / "compare.csv")
@@ -134,7 +134,7 @@ def _misfits(seeds: int, jobs: int | None, out: Path) -> None:
         with common.progress("Running", len(pairs(CONDITIONS, JOINTS)) * seeds) as bar:
             rows = compare(CONDITIONS, JOINTS, range(1, seeds + 1), jobs, bar.update)
         from sigmahat.compare.misfits.figure import draw
-        from sigmahat.plotting.save import save
+        from sigmahat.plotting.figure import save
 
         save(draw, rows, folder / "misfits")
         write(rows, seeds, folder / "misfits.csv")

@@ -201,7 +201,7 @@ def _result(replay: Replay, found: Curve) -> Estimate:
 
 def _save_figure(replay: Replay, answered: Answer, folder: Path) -> None:
     from sigmahat.logs.figure import draw
-    from sigmahat.plotting.save import save
+    from sigmahat.plotting.figure import save
 
     save(lambda source: draw(*source), (replay, answered), folder / "estimate")
 

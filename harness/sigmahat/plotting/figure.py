@@ -1,11 +1,15 @@
-"""Draws panels with Matplotlib."""
+"""Figures with Matplotlib: panels that are drawn, and files in one style."""
 
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Callable, Sequence
+from io import BytesIO
+from pathlib import Path
+from typing import Any, TypeVar
 
+import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from PIL import Image
 
 from sigmahat.plotting.panels import Curve, Kind, Panel
 
@@ -32,8 +36,8 @@ def draw(axes: Axes, panel: Panel, columns: int = 3) -> None:
         elif curve.kind is Kind.POINTS:
             style: Any = {"color": curve.color, "markersize": 4, "alpha": 0.6}
             axes.plot(curve.x, curve.y, ".", label=curve.label, **style)
-        elif curve.kind is Kind.MEANS:
-            ends = np.array([curve.y - curve.low, curve.high - curve.y])
+        elif curve.kind is Kind.MEANS and curve.band is not None:
+            ends = np.array([curve.y - curve.band[0], curve.band[1] - curve.y])
             axes.errorbar(
                 curve.x, curve.y, ends, color=curve.color, marker="o", markersize=4, capsize=3,
                 linewidth=1.2, label=curve.label,
@@ -73,3 +77,32 @@ def _line(axes: Axes, curve: Curve, first: bool) -> None:
         )  # fmt: skip
         if within is not None:
             axes.fill_between(curve.x, low, high, color=color, alpha=0.08, linewidth=0)
+
+
+Source = TypeVar("Source")  # data of a figure
+
+_STYLE: Any = {
+    "font.size": 9,
+    "axes.grid": True,
+    "axes.spines.right": False,
+    "axes.spines.top": False,
+    "grid.color": "#dddddd",
+    "grid.linewidth": 0.6,
+    "legend.fontsize": 8,
+    "lines.linewidth": 1.0,
+    "savefig.dpi": 150,
+    "svg.hashsalt": "sigmahat",  # the same picture gives the same file
+}
+
+
+def save(draw: Callable[[Source], Figure], source: Source, path: Path) -> None:
+    """Draws a figure into <path>.png and <path>.svg. The same source gives the same SVG."""
+    with matplotlib.rc_context(_STYLE):
+        figure = draw(source)
+        figure.savefig(path.with_suffix(".svg"), metadata={"Date": None})
+        figure.set_layout_engine("none")  # the layout is kept, because it takes long to compute
+        pixels = BytesIO()
+        figure.savefig(pixels, format="png", pil_kwargs={"compress_level": 0})
+    with Image.open(pixels) as image:  # 256 colours look the same in a third of the bytes
+        few = image.convert("RGB").quantize(256, method=Image.Quantize.FASTOCTREE)
+        few.save(path.with_suffix(".png"))

@@ -32,27 +32,13 @@ class Curve:
     x: NDArray[Any]
     y: NDArray[Any]
     kind: Kind = Kind.LINE
-    half: NDArray[Any] | None = None  # half widths of the intervals of means
     band: tuple[NDArray[Any], NDArray[Any]] | None = None
-    """Lower and upper end of the intervals of a line."""
+    """Lower and upper end of the intervals of a line, or of means."""
     within: NDArray[np.bool_] | None = None
     """Part of a line in the range of the data, which is not faded; None: the whole line."""
     behind: tuple[NDArray[Any], NDArray[Any]] | None = None
     """x and y of points that a line was fitted to."""
     width: float = 1.4
-
-    @property
-    def low(self) -> NDArray[Any]:
-        """Lower ends of the intervals of means; a logarithmic scale has no place for 0."""
-        assert self.half is not None
-        low: NDArray[Any] = np.maximum(self.y - self.half, 1e-3 * self.y)
-        return low
-
-    @property
-    def high(self) -> NDArray[Any]:
-        assert self.half is not None
-        high: NDArray[Any] = self.y + self.half
-        return high
 
 
 @dataclass(frozen=True)

@@ -71,8 +71,8 @@ def _y_limits(panel: Panel) -> tuple[float, float]:
     # Computed here, because Bokeh would build a search tree of every curve.
     values = [curve.y for curve in panel.curves]
     for curve in panel.curves:
-        if curve.half is not None:
-            values += [curve.low, curve.high]
+        if curve.kind is Kind.MEANS and curve.band is not None:
+            values += curve.band
     if any(curve.kind is Kind.STEPS for curve in panel.curves):
         values.append(np.zeros(1))
     return _limits(values, panel.y_log)
@@ -161,8 +161,8 @@ def _draw_line(plot: figure, curve: Curve, name: str, source: ColumnDataSource) 
 
 def _draw_means(plot: figure, curve: Curve, name: str, source: ColumnDataSource) -> None:
     """Whiskers, a line and points; all parts have one name, so that one switch is for all."""
-    source.data[f"{name}-low"] = curve.low
-    source.data[f"{name}-high"] = curve.high
+    assert curve.band is not None
+    source.data[f"{name}-low"], source.data[f"{name}-high"] = curve.band
     plot.add_layout(
         Whisker(
             base="x", lower=f"{name}-low", upper=f"{name}-high", source=source, name=name,

@@ -7,8 +7,7 @@ same file.
 """
 
 import json
-import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
 from dataclasses import astuple, replace
 from functools import partial
@@ -18,38 +17,14 @@ from typing import Any
 from filelock import FileLock, Timeout
 
 from sigmahat.files.output import created_folder, output_folder
-from sigmahat.fmi.instance import Value, installed
 from sigmahat.runs.engine import Progress
-from sigmahat.runs.metrics import INDICES, Indices
+from sigmahat.runs.metrics import Indices
 from sigmahat.runs.pool import WorkersLostError, spread
-from sigmahat.runs.scenario import PLANT, source_and_variable
 from sigmahat.sweep.cluster import spread_on_cluster
 from sigmahat.sweep.plan import Outcome, Plan
-from sigmahat.sweep.preparation import (
-    ALL,
-    check,
-    execute,
-    fmu_digest,
-    models,
-    parameters_by_owner,
-    reduced,
-    sweep_digest,
-)
+from sigmahat.sweep.preparation import check, execute, fmu_digest, sweep_digest
 from sigmahat.sweep.summary import write_summary
-from sigmahat.sweep.table import (
-    ESTIMATION,
-    FAILURE,
-    RUN,
-    SCENARIO,
-    SEED,
-    Column,
-    ParameterColumn,
-    Role,
-    SweepTable,
-    from_columns,
-    name_in_the_plant,
-    write,
-)
+from sigmahat.sweep.table import SweepTable, of_outcomes, write
 
 NAME = "runs.jsonl"
 _HINT = "choose another folder with --out, or delete this file"
@@ -154,9 +129,8 @@ def sweep(
         if len(failures) == len(plan):
             done.outcomes.clear()  # nothing is worth keeping
             raise ValueError(f"every run failed, the first with: {failures[0]}")
-        table = _table(plan, done.outcomes)
-        from sigmahat.plotting.figure import stacked
-        from sigmahat.plotting.save import save
+        table = of_outcomes(plan, done.outcomes)
+        from sigmahat.plotting.figure import save, stacked
         from sigmahat.sweep.panels import against_parameters, distributions
 
         with output_folder(out) as folder:
@@ -186,61 +160,3 @@ def _run(plan: Plan, done: Records, scheduler: str | None, progress: Progress) -
                 progress(1)
     except WorkersLostError as error:
         raise WorkersLostError(f"{error}; the same command does the remaining runs") from error
-
-
-_FAILED = Indices(*[math.nan] * len(INDICES))
-
-
-def _table(plan: Plan, outcomes: Mapping[int, Outcome]) -> SweepTable:
-    """The table of a complete sweep from its outcomes by number; rows in the order of the plan."""
-    scenarios = {name: reduced(name, plan.modalities) for name in plan.scenarios}
-    usual = {
-        name: {o: installed(m.fmu).parameters(m.start) for o, m in models(each).items()}
-        for name, each in scenarios.items()
-    }
-    parameters: dict[str, ParameterColumn] = {}
-    first = models(scenarios[plan.scenarios[0]])
-    for full in plan.parameters:
-        owner, _, name = full.partition(".")
-        model = first[next(each for each in first if each != PLANT) if owner == ALL else owner]
-        role = Role.LISTED if full in plan.listed else Role.DRAWN
-        unit = installed(model.fmu).variable(name).unit
-        parameters[full] = ParameterColumn(role, owner, name, unit)
-    swept = {name_in_the_plant(each.parameter) for each in parameters.values()}
-    errors = dict.fromkeys(
-        ParameterColumn(Role.ERROR, ALL, name, "%")
-        for own in usual.values()
-        for owner, values in own.items()
-        for name in values
-        if owner != PLANT and name_in_the_plant(name) in swept & own[PLANT].keys()
-    )
-    order: list[Column] = [RUN, SCENARIO, SEED, *parameters.values(), *errors]
-    columns: dict[Column, list[Any]] = {
-        column: [] for column in (*order, ESTIMATION, *INDICES.values(), FAILURE)
-    }
-    for run in plan.runs:
-        outcome = outcomes[run.number]
-        chosen = parameters_by_owner(run.parameters, scenarios[run.scenario])
-        given = {o: {**own, **chosen[o]} for o, own in usual[run.scenario].items()}
-        for comparison in scenarios[run.scenario].comparisons:
-            estimator, _ = source_and_variable(comparison.estimate)
-            indices = astuple(outcome.indices.get(comparison.name, _FAILED))
-            row: dict[Column, Any] = {
-                RUN: run.number,
-                SCENARIO: run.scenario,
-                SEED: run.seed,
-                **{column: run.parameters[name] for name, column in parameters.items()},
-                **{each: _error(each.parameter, given[estimator], given[PLANT]) for each in errors},
-                ESTIMATION: comparison.name,
-                **dict(zip(INDICES.values(), indices, strict=True)),
-                FAILURE: outcome.failure,
-            }
-            for column, values in columns.items():
-                values.append(row[column])
-    return from_columns(columns)
-
-
-def _error(name: str, estimator: Mapping[str, Value], plant: Mapping[str, Value]) -> float:
-    """Error of a parameter, relative to the plant [%]; nan if the plant has 0 or no such value."""
-    true = float(plant.get(name_in_the_plant(name), 0.0))
-    return (float(estimator[name]) / true - 1) * 100 if true and name in estimator else math.nan

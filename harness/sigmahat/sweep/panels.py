@@ -75,24 +75,18 @@ def log_bins(values: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def distributions(sweep: SweepTable) -> list[Panel]:
     """Histograms of the error of all runs, with and without the start-up."""
-    return [_distribution(sweep, index) for index in drawn_indices(sweep)]
-
-
-def _distribution(sweep: SweepTable, index: Index) -> Panel:
-    every = {label: rows.numbers(index) for label, rows in parts(sweep).items()}
-    edges = log_bins(np.concatenate([x[x > 0] for x in every.values()]))
-    curves = [
-        Curve(label, COLORS[i % len(COLORS)], edges, np.histogram(x, edges)[0], Kind.STEPS)
-        for i, (label, x) in enumerate(every.items())
-    ]
-    return Panel(
-        f"Distribution of {index.name(time_of(index))}",
-        index.title(time_of(index)),
-        "runs",
-        curves,
-        x_log=True,
-        linked=False,
-    )
+    panels = []
+    for index in drawn_indices(sweep):
+        when = time_of(index)
+        every = {label: rows.numbers(index) for label, rows in parts(sweep).items()}
+        edges = log_bins(np.concatenate([x[x > 0] for x in every.values()]))
+        curves = [
+            Curve(label, COLORS[i % len(COLORS)], edges, np.histogram(x, edges)[0], Kind.STEPS)
+            for i, (label, x) in enumerate(every.items())
+        ]
+        heading, x_label = f"Distribution of {index.name(when)}", index.title(when)
+        panels.append(Panel(heading, x_label, "runs", curves, x_log=True, linked=False))
+    return panels
 
 
 def against_parameters(sweep: SweepTable) -> Iterator[Panel]:
@@ -119,5 +113,7 @@ def _curves(sweep: SweepTable, column: ParameterColumn, index: Index) -> Iterato
             continue
         at = np.unique(x)
         mean, half = np.array([mean_interval(y[x == value].tolist()) for value in at]).T
-        # The interval of a single run is not defined.
-        yield Curve(label, color, at, mean, Kind.MEANS, np.nan_to_num(half))
+        half = np.nan_to_num(half)  # the interval of a single run is not defined
+        # A logarithmic scale has no place for 0.
+        band = np.maximum(mean - half, 1e-3 * mean), mean + half
+        yield Curve(label, color, at, mean, Kind.MEANS, band)

@@ -136,8 +136,7 @@ class Run:
     modalities: tuple[str, ...]
     """Estimators to run; empty: all estimators that the scenario compares."""
     seed: int
-    parameters: Mapping[str, Value]
-    """Values by name with owner, "plant.motor.B"."""
+    parameters: Mapping[str, Value]  # values by name with owner, "plant.motor.B"
 
 
 @dataclass(frozen=True)
@@ -173,7 +172,6 @@ class Plan:
 
     @cached_property
     def runs(self) -> tuple[Run, ...]:
-        """The runs in their order."""
         return tuple(self._runs())
 
     def _runs(self) -> Iterator[Run]:

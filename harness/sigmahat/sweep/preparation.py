@@ -16,8 +16,7 @@ from sigmahat.runs.pool import WorkerError
 from sigmahat.runs.scenario import PLANT, Scenario, to_record
 from sigmahat.sweep.plan import Outcome, Plan, Run
 
-ALL = "estimator"
-"""Owner of a parameter of all estimators."""
+ALL = "estimator"  # owner of a parameter of all estimators
 
 
 def prepare(run: Run) -> Scenario:
