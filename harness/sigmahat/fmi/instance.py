@@ -8,7 +8,7 @@ import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from copy import copy
-from ctypes import byref, c_size_t
+from ctypes import byref
 from functools import lru_cache
 from importlib import import_module
 from multiprocessing.util import Finalize, is_exiting
@@ -21,6 +21,7 @@ from weakref import WeakValueDictionary
 import fmpy
 import numpy as np
 from fmpy import fmi2
+from fmpy.fmi1 import FMICallException
 from numpy.typing import NDArray
 
 from sigmahat.fmi.installed import fmu as installed_fmu
@@ -279,38 +280,31 @@ class Slave:
 
     def saved(self) -> bytes:
         """The state: parameters, inputs, outputs, time, and all that the FMU has learned."""
-        fmi = self.functions
-        with self._state() as state:
-            self.call(fmi.fmi2GetFMUstate, byref(state))
-            size = c_size_t()
-            self.call(fmi.fmi2SerializedFMUstateSize, state, byref(size))
-            saved = (fmi2.fmi2Byte * size.value)()
-            self.call(fmi.fmi2SerializeFMUstate, state, saved, size)
-            return bytes(saved)
+        with self._state(self.fmi.getFMUstate) as state:
+            return bytes(self.fmi.serializeFMUstate(state))
 
     def restore(self, saved: bytes) -> float:
         """Takes a state that was saved, and returns its time [s].
 
         Raises FmuError, whose message says what is wrong, for bytes that are no state of this FMU.
         """
-        fmi = self.functions
-        with self._state() as state:
-            block = (fmi2.fmi2Byte * len(saved)).from_buffer_copy(saved)
-            self.call(fmi.fmi2DeSerializeFMUstate, block, len(saved), byref(state))
-            self.call(fmi.fmi2SetFMUstate, state)
+        with self._state(self.fmi.deSerializeFMUstate, saved) as state:
+            self.fmi.setFMUstate(state)
         time = fmi2.fmi2Real()
-        self.call(fmi.fmi2GetRealStatus, fmi2.fmi2LastSuccessfulTime, byref(time))
+        self.call(self.functions.fmi2GetRealStatus, fmi2.fmi2LastSuccessfulTime, byref(time))
         return float(time.value)
 
     @contextmanager
-    def _state(self) -> Iterator[Any]:
-        """A pointer to a state, whose memory is freed at the end of the block."""
-        state = fmi2.fmi2FMUstate()
+    def _state(self, make: Callable[..., Any], *arguments: bytes) -> Iterator[Any]:
+        """A state that FMPy makes; its memory is freed at the end of the block."""
         try:
-            yield state
-        finally:
-            if state:
-                self.functions.fmi2FreeFMUstate(self.component, byref(state))
+            state = make(*arguments)
+            try:
+                yield state
+            finally:
+                self.fmi.freeFMUstate(state)
+        except FMICallException as error:
+            raise self.failure(error.function) from error
 
     def take_message(self, status: int, text: str) -> None:
         """Logs a warning, and keeps the text of an error for the exception."""

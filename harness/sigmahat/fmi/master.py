@@ -98,7 +98,7 @@ def simulate(
         first = dict(zip(names, values[0].tolist(), strict=True))
         plant_slave.initialize({**plant.start, **first})
         truth, recorders = Recorder(plant_slave, plant.record, len(t)), {}
-        tick, loop = SampleLoop(), SampleLoop()
+        tick = SampleLoop()
         truth.add_to(tick)
         for name, estimator in estimators.items():
             slave = instantiate(estimator.fmu, name)
@@ -107,7 +107,7 @@ def simulate(
             tick.step(slave, times)
             recorders[name] = Recorder(slave, estimator.record, len(t))
             recorders[name].add_to(tick)
-        loop.extend(tick)
+        loop = SampleLoop(tick)
         loop.set_real(plant_slave, inputs, values)
         if plant_slave.fmu.description.coSimulation.canInterpolateInputs:
             loop.set_slopes(plant_slave, inputs, np.diff(values, axis=0) / np.diff(t)[:, None])

@@ -65,12 +65,12 @@ class SampleLoop:
     another FMU. Tables are C-contiguous, and are read and written in place.
     """
 
-    def __init__(self) -> None:
-        self._calls: list[_Call] = []
+    def __init__(self, *parts: SampleLoop) -> None:
+        """Begins with the calls of other loops."""
+        self._calls: list[_Call] = [call for part in parts for call in part._calls]
         self._native: ctypes.Array[_NativeCall] | None = None
 
     def set_real(self, slave: Slave, references: Any, table: NDArray[np.float64]) -> None:
-        """Sets Real variables."""
         if len(references):
             self._add(_SET_REAL, slave, slave.functions.fmi2SetReal, references, None, table)
 
@@ -91,11 +91,6 @@ class SampleLoop:
             number = _GET_REAL if kind == "Real" else _GET_INTEGER
             get = getattr(slave.functions, f"fmi2Get{kind}")
             self._add(number, slave, get, references, None, table)
-
-    def extend(self, other: SampleLoop) -> None:
-        """Adds the calls of another loop."""
-        self._calls += other._calls
-        self._native = None
 
     def run(self, first: int, end: int) -> None:
         """Makes all calls for the samples first to end - 1.
@@ -184,7 +179,6 @@ class Recorder:
         self._items = {
             v.name: slave.fmu.items(v.name) for v in variables if v.type == "Enumeration"
         }
-        self.units = {v.name: v.unit for v in variables if v.unit is not None}
 
     def add_to(self, loop: SampleLoop) -> None:
         """From now on the loop writes a row for each of its samples."""

@@ -16,7 +16,6 @@ from sigmahat.fmi.instance import Value, installed
 INPUTS = ("theta", "q", "theta_c", "tau", "tau_e_sensor")  # inputs in the order of the library
 
 _CACHE_LINE = 64  # [bytes]
-_LARGEST_INTEGER = 2**31 - 1
 _PIECE = 1 << 16  # ticks between two moments at which Ctrl-C can end the run
 _GROUP = 64  # joints at a time: 1024 ticks of each, so that its state stays in the cache
 
@@ -63,22 +62,13 @@ class Joints:
         changed = self.memory[joint].copy()
         for name, value in parameters.items():
             variable = self.fmu.variable(name, "parameter")
-            number = self._number(name, value)
+            number = self.fmu.number(name, value)
             self._library.sh_joint_set(changed.ctypes.data, variable.valueReference, number)
         violation = _Violation()
         if self._library.sh_joint_check(changed.ctypes.data, ctypes.byref(violation)):
             name, expected = violation.name.decode(), violation.range.decode()
             raise ValueError(f"{name}: expected {expected}, got {violation.value:.9g}")
         self.memory[joint] = changed
-
-    def _number(self, name: str, value: Value) -> float:
-        try:
-            number = float(self.fmu.number(name, value))
-        except (TypeError, OverflowError) as error:
-            raise ValueError(f"{name}: expected a number, got {value!r}") from error
-        if self.fmu.variable(name).type != "Real" and abs(number) > _LARGEST_INTEGER:
-            raise ValueError(f"{name}: expected at most {_LARGEST_INTEGER}, got {value!r}")
-        return number
 
     def evaluated(
         self, joint: int, phi: NDArray[np.float64], set_point: NDArray[np.float64]
@@ -91,7 +81,6 @@ class Joints:
         return by_name
 
     def copied(self) -> Joints:
-        """Other estimators in the same state."""
         other = copy(self)
         other.memory = self.memory.copy()
         return other
@@ -162,7 +151,6 @@ class Joints:
         return call
 
     def empty(self, name: str, joints: int, samples: int) -> NDArray[Any]:
-        """An array for an output."""
         return np.empty((joints, samples), self._dtype(name))
 
     def _dtype(self, name: str) -> type[np.float64] | type[np.int32]:

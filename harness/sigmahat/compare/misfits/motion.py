@@ -142,10 +142,7 @@ def _step(
     step.set_slopes(plant, inputs, slopes)
     step.step(plant, step_times(t[:-1], h))
     if control is None:
-        both = SampleLoop()
-        both.extend(read)
-        both.extend(step)
-        both.run(0, len(h))
+        SampleLoop(read, step).run(0, len(h))
     else:
         for k in range(len(h)):
             read.run(k, k + 1)
