@@ -28,7 +28,6 @@ _OPEN = "open"  # class of an input that has to be filled in
 
 
 def style() -> InlineStyleSheet:
-    """The style of a widget."""
     return InlineStyleSheet(css=STYLE)
 
 
@@ -70,7 +69,6 @@ class Number:
         self.widget.on_change("value", self._typed)
 
     def show(self) -> None:
-        """Shows the value of the configuration."""
         value = self._setup.get(self._key)
         is_open = self._key in self._setup.open_keys
         is_default = value is None or (value == 0 and self._key == GAMMA)
@@ -130,7 +128,6 @@ class Choice:
         self.widget.options = list(self._options)
 
     def show(self) -> None:
-        """Shows the value of the configuration."""
         value = self._current()
         if value not in {each for each, _ in self._options}:
             self._options.append((value, value))

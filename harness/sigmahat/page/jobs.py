@@ -84,7 +84,6 @@ class Jobs:
         self._thread = threading.Thread(target=self._run, daemon=True)
 
     def start(self) -> None:
-        """Begins with the columns, if the thread has not started."""
         if self._thread.ident is None:
             self._thread.start()
 
@@ -177,7 +176,7 @@ class Jobs:
         setup, document = self._setup, tomlkit.parse(text)
         out = Path("sigmahat-results", setup.log.path.stem, setup.joint)
         try:
-            if not setup.is_by_sensor:
+            if setup.get("modality") != "Sensor":  # else there is no motor to identify
                 found = identify(setup.log, checked_configuration(document, setup.path))
                 update(document, found)
             self._later(partial(self._show, version, busy="Estimating ..."))

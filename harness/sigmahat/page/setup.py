@@ -67,7 +67,6 @@ class Setup:
         """The configurations of the joints by name; empty until they are known."""
 
     def show(self) -> None:
-        """Updates all windows."""
         for each in list(self.windows):
             each()
 
@@ -217,11 +216,6 @@ class Setup:
         self.message = f"Written: {self.path.resolve()}."
         self.is_edited = False
         return True
-
-    @property
-    def is_by_sensor(self) -> bool:
-        """Whether a sensor measures the torque: then `identify` has no motor to identify."""
-        return bool(self.get("modality") == "Sensor")
 
     def estimated(self, before: str, document: tomlkit.TOMLDocument, folder: Path) -> None:
         """Takes the configuration with which results were written into a folder, and writes it.
