@@ -52,15 +52,9 @@ class Fmu {
   }
 
   #setStart(name, value) {
-    const { type, reference } = this.variable(name);
-    if (type !== "Real" && !Number.isInteger(Number(value)))
+    if (this.variable(name).type !== "Real" && !Number.isInteger(Number(value)))
       throw new Error(`${name}: expected a whole number, got ${value}`);
-    const place = this.wasm.malloc(16), memory = new DataView(this.wasm.memory.buffer);
-    memory.setUint32(place, reference, true);
-    if (type === "Real") memory.setFloat64(place + 8, value, true);
-    else memory.setInt32(place + 8, value, true);
-    this.call(`fmi2Set${callType({ type })}`, place, 1, place + 8);
-    this.wasm.free(place);
+    new Signals(this, [name]).set([value]);
   }
 
   #text(text) {

@@ -1,5 +1,6 @@
 "use strict";
 // A plot on a canvas: axes, lines and bands. Any number of points costs as many as there are pixels.
+// And the samples that a plot shows.
 
 const MARGIN = { left: 56, right: 10, top: 8, bottom: 26 };
 
@@ -125,6 +126,32 @@ class Plot {
       else if (value < last[2]) last[2] = value;
     }
     return found;
+  }
+}
+
+/** The last samples of several signals, each in one piece of memory. */
+class Samples {
+  /** names of the signals; length: most samples that are kept */
+  constructor(names, length) {
+    this.length = length;
+    this.count = 0;
+    this.columns = Object.fromEntries(names.map((name) => [name, new Float64Array(2 * length)]));
+  }
+
+  /** Adds a sample: a value for each signal, in their order. */
+  push(...values) {
+    const columns = Object.values(this.columns);
+    if (this.count === 2 * this.length) {
+      for (const column of columns) column.copyWithin(0, this.length);
+      this.count = this.length;
+    }
+    columns.forEach((column, i) => { column[this.count] = values[i]; });
+    this.count += 1;
+  }
+
+  /** The samples that are kept, oldest first. */
+  get(name) {
+    return this.columns[name].subarray(Math.max(0, this.count - this.length), this.count);
   }
 }
 

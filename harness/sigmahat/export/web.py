@@ -24,7 +24,7 @@ FUNCTIONS = (
     *("fmi2Instantiate", "fmi2SetupExperiment", "fmi2EnterInitializationMode"),
     *("fmi2ExitInitializationMode", "fmi2DoStep", "fmi2GetReal", "fmi2GetInteger"),
     *("fmi2GetBoolean", "fmi2SetReal", "fmi2SetInteger", "fmi2SetBoolean"),
-    *("fmi2SetRealInputDerivatives", "page_callbacks", "malloc", "free"),
+    *("fmi2SetRealInputDerivatives", "page_callbacks", "malloc"),
 )
 """Functions that the page calls."""
 _TARGET, _KIND = "wasm32-wasi", "-mexec-model=reactor"
@@ -49,9 +49,12 @@ def write(out: Path, page: Path, fmus: list[Path], cache: Path) -> None:
     for file in page.iterdir():
         if file.suffix in (".html", ".css", ".js"):
             shutil.copyfile(file, out / file.name)
-    by_stem = {fmu.stem: fmu for fmu in fmus}
-    data = {"FMUS": types, "SCENARIO": _scenario(by_stem), "WORDS": _words(), "UNKNOWN": _UNKNOWN}
-    lines = ['"use strict";', *(f"const {name} = {_json(each)};" for name, each in data.items())]
+    # The words by which `sigmahat init` recognises columns.
+    words = toml_file.read(Path(guessing.__file__).parent / "vocabulary.toml").unwrap()
+    conditions = _scenario({fmu.stem: fmu for fmu in fmus})
+    data = {"FMUS": types, "SCENARIO": conditions, "WORDS": words, "UNKNOWN": _UNKNOWN}
+    encode = json.JSONEncoder(separators=(",", ":"), default=dict).encode
+    lines = ['"use strict";', *(f"const {name} = {encode(each)};" for name, each in data.items())]
     (out / "fmus.js").write_text("\n".join([*lines, ""]), encoding="utf-8")
 
 
@@ -111,12 +114,3 @@ def _numbers(fmu: Path, start: Mapping[str, Value]) -> dict[str, float | int]:
     """Start values as numbers for FMI."""
     with Fmu(fmu) as opened:
         return {name: opened.number(name, value) for name, value in start.items()}
-
-
-def _words() -> dict[str, Any]:
-    """The words by which `sigmahat init` recognises columns."""
-    return toml_file.read(Path(guessing.__file__).parent / "vocabulary.toml").unwrap()
-
-
-def _json(data: object) -> str:
-    return json.dumps(data, ensure_ascii=True, separators=(",", ":"), default=dict)
