@@ -71,8 +71,8 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
     with pytest.MonkeyPatch.context() as patch:  # two motions; few joints
         patch.setattr(Ranges, "corners", most_friction)
-        spread = "sigmahat.motion.design.spread"
-        patch.setattr(spread, lambda jobs: enumerate(job() for job in jobs))
+        spread = "sigmahat.runs.engine.spread"
+        patch.setattr(spread, lambda jobs, _: ((i, job()) for i, job in enumerate(jobs)))
         patch.setattr("sigmahat.motion.design._OF_RESONANCE", (0.3, 0.5))
         patch.setattr("sigmahat.motion.design._EXPONENTS", (1.0,))
         patch.setattr("sigmahat.motion.design._COMPARED", 1)

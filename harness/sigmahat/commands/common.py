@@ -94,14 +94,11 @@ def for_each_joint(
     joints = [joint] if joint else joints_of(read_document(config), config)
     if len(joints) == 1:
         return {joints[0]: job(joints[0])}
-    from sigmahat.runs.pool import spread
+    from sigmahat.runs.engine import run_all
 
-    found: dict[str, _Result] = {}
+    jobs = [partial(_with_name, job, joint) for joint in joints]
     with progress("Joints", len(joints)) as bar:
-        for place, result in spread([partial(_with_name, job, joint) for joint in joints]):
-            found[joints[place]] = result
-            bar.update(1)
-    return {joint: found[joint] for joint in joints}
+        return dict(zip(joints, run_all(jobs, progress=bar.update), strict=True))
 
 
 def _with_name(job: Callable[[str], _Result], joint: str) -> _Result:
@@ -132,13 +129,15 @@ quiet_option = _flag("--quiet", "Print nothing but errors.")
 
 
 def answer(text: str, values: object = None, head: str = "") -> None:
-    """Prints the result: values after --json, nothing after --quiet, else the text.
+    """Prints the result: values after --json, nan as null; nothing after --quiet; else the text.
 
     head  is printed before, in bold
     """
     options = click.get_current_context().meta
     if options.get(_JSON):
-        print_json(values)
+        from sigmahat.files.output import finite
+
+        click.echo(json.dumps(finite(values), indent=2))
     elif not options.get(_QUIET):
         if head:
             click.secho(printable(head), bold=True)
@@ -233,10 +232,3 @@ def errors_in_one_line(out: Path, option: str = "--out") -> Iterator[None]:
 def configuration_of(log: Path) -> Path:
     """Default path of the configuration of a log: in this folder, with the suffix .toml."""
     return Path(f"{log.stem}.toml")
-
-
-def print_json(values: object) -> None:
-    """Prints values for a script; nan and infinity become null."""
-    from sigmahat.files.output import finite
-
-    click.echo(json.dumps(finite(values), indent=2))

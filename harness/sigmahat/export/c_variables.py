@@ -155,7 +155,6 @@ static const integer_parameter INTEGERS[] = {{
 
 
 def write_parameters(template: Path, out: Path) -> None:
-    """Write the parameter table."""
     out.write_text(parameter_table(template), encoding="utf-8")
 
 

@@ -54,21 +54,10 @@ def compile_files(target: str, arguments: Iterable[str | Path], cache: Path, cwd
 
 
 def source_files(folder: Path) -> list[Path]:
-    """The C files of an unpacked FMU."""
     # FMPy reads the SourceFiles of FMI 2.0 as a build configuration of FMI 3.0.
     described: Any = fmpy.read_model_description(str(folder))
     listed = described.buildConfigurations[0].sourceFileSets[0].sourceFiles
     return [folder / "sources" / source for source in listed]
-
-
-def compile_binary(folder: Path, platform: str, cache: Path) -> None:
-    """Compile the sources of an unpacked FMU, and put the binary in its place in the folder.
-
-    ``cache`` and errors as ``compile_files``.
-    """
-    name = fmpy.read_model_description(str(folder)).coSimulation.modelIdentifier
-    out = folder / "binaries" / platform / name
-    compile_shared(source_files(folder), [folder / "sources"], out, platform, cache)
 
 
 def compile_shared(
@@ -102,7 +91,8 @@ def release(fmu: Path, out: Path, cache: Path) -> None:
     with TemporaryDirectory() as unpacked:
         folder = Path(fmpy.extract(str(fmu), unzipdir=unpacked))
         shutil.rmtree(folder / "binaries")
-        version = fmpy.read_model_description(str(folder)).fmiVersion
-        for platform in PLATFORMS_3 if version == "3.0" else PLATFORMS:
-            compile_binary(folder, platform, cache)
+        described = fmpy.read_model_description(str(folder))
+        for platform in PLATFORMS_3 if described.fmiVersion == "3.0" else PLATFORMS:
+            binary = folder / "binaries" / platform / described.coSimulation.modelIdentifier
+            compile_shared(source_files(folder), [folder / "sources"], binary, platform, cache)
         archive.write(out, archive.files_in(folder))

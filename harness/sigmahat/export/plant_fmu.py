@@ -107,7 +107,9 @@ def _list_variables(
         variability = "discrete" if discrete else "continuous"
         on = " ".join(depends[name])
         add(name, "output", variability=variability, initial="calculated", depends=on)
-    fixed = _needed_at_the_start(plant)
+    # Start values of states depend on these.
+    start = ca.vertcat(*(state.start for state in plant.states.values()))
+    fixed = {symbol.name() for symbol in ca.symvar(start)}
     for name in plant.parameters:
         variability = "fixed" if name in fixed else "tunable"
         add(name, "parameter", variability=variability, initial="exact")
@@ -135,12 +137,6 @@ def _depends(plant: PlantEquations) -> dict[str, list[str]]:
         symbols = [s.name() for s in ca.symvar(ca.substitute(expression, x, start))]
         depends[name] = sorted({SEED if s in noise else s for s in symbols})
     return depends
-
-
-def _needed_at_the_start(plant: PlantEquations) -> set[str]:
-    """Names of the parameters on which start values of states depend."""
-    start = ca.vertcat(*(state.start for state in plant.states.values()))
-    return {symbol.name() for symbol in ca.symvar(start)}
 
 
 def _has_steps(expression: ca.SX) -> bool:

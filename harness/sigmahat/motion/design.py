@@ -19,7 +19,7 @@ from sigmahat.logs.configuration import checked_configuration
 from sigmahat.logs.estimate import estimate
 from sigmahat.logs.log import LogError, LogInMemory
 from sigmahat.motion.joints import Array, Joint, Limits, Multisine, Ranges
-from sigmahat.runs.pool import spread
+from sigmahat.runs.engine import run_all
 
 _RATIOS = (1.0, 1.618, 2.713, 4.237)  # of the frequencies: no multiples of each other
 _PHASES = (0.0, 1.0, 2.0, 3.0)
@@ -179,11 +179,7 @@ def _widths(
     pairs: Sequence[tuple[Multisine, Joint]], sensors: Sensors, progress: Callable[[int], object]
 ) -> list[float]:
     jobs = [partial(relative_half_width, joint, motion, sensors) for motion, joint in pairs]
-    found = [np.inf] * len(jobs)
-    for place, width in spread(jobs):
-        found[place] = width
-        progress(1)
-    return found
+    return run_all(jobs, progress=progress)
 
 
 def _candidates(joints: Sequence[Joint], limits: Limits, duration: float) -> Iterator[Multisine]:
