@@ -13,8 +13,7 @@ from sigmahat.paper.scenarios import SCENARIOS, awas, lever_arm
 from sigmahat.runs.scenario import Comparison, Scenario, Sine
 
 PAPER2011, REGRESSION = METHODS = ("Paper2011", "FilteredRegression")
-TRUE = {"D_theta": 1e-3, "B": 2.3e-5}
-"""Motor data of every joint here [N.m.s/rad], [kg.m2]."""
+TRUE = {"D_theta": 1e-3, "B": 2.3e-5}  # motor data of every joint here [N.m.s/rad], [kg.m2]
 
 
 @dataclass(frozen=True)

@@ -12,8 +12,7 @@ from sigmahat.runs.engine import Progress, indices_by_comparison, measured, run_
 from sigmahat.runs.metrics import INDICES, Index, Indices
 from sigmahat.runs.scenario import Comparison, Scenario, signal_of, source_and_variable
 
-CALIBRATED = 2.0
-"""Time from which on sigma_std is compared with the error [s]."""
+CALIBRATED = 2.0  # time from which on sigma_std is compared with the error [s]
 _UNKNOWN = np.array([np.nan])
 
 
@@ -29,12 +28,9 @@ class Performance:
     """Root mean square of sigma_std relative to the true stiffness, from CALIBRATED on [%]"""
     inside: float
     """Percentage of instants from CALIBRATED on with an error of at most 1.96 sigma_std [%]"""
-    D_theta: float
-    """[N.m.s/rad]"""
-    B: float
-    """[kg.m2]"""
-    tau_coulomb: float
-    """[N.m]"""
+    D_theta: float  # [N.m.s/rad]
+    B: float  # [kg.m2]
+    tau_coulomb: float  # [N.m]
 
 
 def performances(scenario: Scenario, recording: Recording) -> dict[str, Performance]:

@@ -32,7 +32,6 @@ def group(row: Row) -> str:
 
 
 def lever_arm(joint: Joint) -> str:
-    """The lever arm of an AwAS, as text."""
     return f"r(0) = {1e3 * (joint.lever_arm or 0.0):g} mm"
 
 

@@ -74,12 +74,9 @@ def reproduce(
 
 TABLE = "table.csv"
 """File with the indices of each comparison; each estimator has a file over time, too."""
-ESTIMATION, SEEDS = "estimation", "seeds"
-"""The first columns of the file with the indices."""
-TIME = "t"
-"""The first column of a file over time."""
-PLANT = "plant."
-"""Prefix of the names of plant signals in a file over time."""
+ESTIMATION, SEEDS = "estimation", "seeds"  # the first columns of the file with the indices
+TIME = "t"  # the first column of a file over time
+PLANT = "plant."  # prefix of the names of plant signals in a file over time
 
 
 _ORDER = ("MODEL", "SENSOR", "RESIDUAL")  # the order of Table I; other estimators follow by name
@@ -89,8 +86,7 @@ _ORDER = ("MODEL", "SENSOR", "RESIDUAL")  # the order of Table I; other estimato
 class ResultFiles:
     """The files of one folder."""
 
-    table: pa.Table
-    """The indices of each comparison, as in table.csv."""
+    table: pa.Table  # the indices of each comparison, as in table.csv
     series: Mapping[str, Mapping[str, NDArray[Any]]]
     """Signals by estimator and by name, of one shape: t, plant.<output>, <output>."""
 

@@ -23,10 +23,8 @@ def against_the_plant(estimators: Iterable[str]) -> list[Comparison]:
     return [Comparison(name, f"{name}.sigma", "plant.sigma") for name in estimators]
 
 
-SECTION_VI_B = Sine(0.3, 0.1)
-"""Torque of the principal motor in section VI.B [N.m, Hz]."""
-R_0 = 0.1
-"""Lever arm without retraction, (30) [m]."""
+SECTION_VI_B = Sine(0.3, 0.1)  # torque of the principal motor in section VI.B [N.m, Hz]
+R_0 = 0.1  # lever arm without retraction, (30) [m]
 _B = 0.0025 / (2 * math.pi)  # b of (30) [m/rad]
 
 _AWAS_OUTPUTS = (

@@ -97,10 +97,8 @@ class Condition:
 
     name: str
     group: Group
-    change: Change
-    """Adds the misfit to an experiment."""
-    joints: Sequence[Joint] = JOINTS
-    """Joints that can have the misfit."""
+    change: Change  # adds the misfit to an experiment
+    joints: Sequence[Joint] = JOINTS  # joints that can have the misfit
     torque_gain: float = 0.0
     """Prior standard deviation of the gain of the torque that the estimator is given [1]."""
 
@@ -122,7 +120,6 @@ def _share_of_torque(name: str, share: float, **others: float) -> Change:
 
 
 def _run(**changed: float | Drive | Mapping[str, float]) -> Change:
-    """Changes fields of the experiment."""
     return lambda experiment: replace(experiment, **changed)  # type: ignore[arg-type]
 
 

@@ -59,18 +59,15 @@ SEA_5K = _elastic("SEA5k", 5000.0, 262144.0, 0.0024)
 
 JOINTS: Sequence[Joint] = (AWAS, SEA_1K, SEA_5K)
 
-DRIFT_TIME = 60.0
-"""Time in which a drift reaches its value [s]."""
+DRIFT_TIME = 60.0  # time in which a drift reaches its value [s]
 _LEVER_ARM_CHANGE = 0.012  # peak of the motion of a lever arm [m]
 
 
 class Drive(Enum):
     """The torque between two samples, and the torque that is measured at a sample."""
 
-    LINEAR = 1
-    """Linear between the samples; measured: the torque at the sample."""
-    HELD = 2
-    """Held; measured: the torque of the period that begins."""
+    LINEAR = 1  # linear between the samples; measured: the torque at the sample
+    HELD = 2  # held; measured: the torque of the period that begins
     HELD_MEAN = 3
     """Held; measured: the mean torque of the period that ends and the period that begins."""
 
@@ -90,33 +87,24 @@ class Experiment:
     """All settings of a run. Function `draw` adds no misfits; conditions add misfits."""
 
     joint: Joint
-    seed: int
-    """Seed of the noise and of other random effects in the run."""
-    plant: Mapping[str, float]
-    """Start values of RealJointPlant that differ from the default values."""
-    torque: Sines
-    """Torque command, on the motor axis [N.m]; not used under control."""
-    lever_arm: Sines | None
-    """Lever arm [m]; None for a joint without a lever arm."""
+    seed: int  # seed of the noise and of other random effects in the run
+    plant: Mapping[str, float]  # start values of RealJointPlant that differ from the default values
+    torque: Sines  # torque command, on the motor axis [N.m]; not used under control
+    lever_arm: Sines | None  # lever arm [m]; None for a joint without a lever arm
     errors: Mapping[str, float]
     """Relative errors of the values of B and D_theta that the estimator is given [1]."""
     estimator: Mapping[str, Value] = field(default_factory=dict)
     """Start values of the estimator that differ from `settings`."""
-    T: float = 1e-3
-    """Sample period [s]."""
-    duration: float = 20.0
-    """[s]"""
-    rest: float = 0.0
-    """Time until the torque begins [s]."""
+    T: float = 1e-3  # sample period [s]
+    duration: float = 20.0  # [s]
+    rest: float = 0.0  # time until the torque begins [s]
     drive: Drive = Drive.LINEAR
     control: Control | None = None
     """None: the torque is the command. Else the drive holds the torque of this control."""
     late: float = 0.0
     """Delay of the measured torque [s], below 0: it is early; with Drive.LINEAR only."""
-    jitter: float = 0.0
-    """Standard deviation of the sample times, divided by T [1]."""
-    load: float = 0.0
-    """Constant external torque on the link [N.m]."""
+    jitter: float = 0.0  # standard deviation of the sample times, divided by T [1]
+    load: float = 0.0  # constant external torque on the link [N.m]
     drift: Mapping[str, float] = field(default_factory=dict)
     """Inputs of RealJointPlant that go from 0 to this value in DRIFT_TIME, linearly."""
 
@@ -127,11 +115,9 @@ class Experiment:
         return self.plant["spring.k_1"] + 2 * self.plant.get("spring.k_s", 0.0) * arm**2
 
     def with_plant(self, changed: Mapping[str, float]) -> Experiment:
-        """The experiment with other start values of the plant."""
         return replace(self, plant={**self.plant, **changed})
 
     def with_estimator(self, changed: Mapping[str, Value]) -> Experiment:
-        """The experiment with other start values of the estimator."""
         return replace(self, estimator={**self.estimator, **changed})
 
     def scaled(self, factors: Mapping[str, float]) -> Experiment:

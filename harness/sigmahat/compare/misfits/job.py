@@ -21,12 +21,10 @@ from sigmahat.logs.replay import play
 from sigmahat.logs.sampling import Samples
 from sigmahat.runs.engine import Progress, run_all
 
-SETTLED = 2.0
-"""Time after the start of the torque from which an estimate is judged [s]."""
+SETTLED = 2.0  # time after the start of the torque from which an estimate is judged [s]
 DANGEROUS_ERROR, DANGEROUS_CLAIM = 0.1, 0.02
 """Limits of a dangerous instant: error above, and sigma_std / estimate below its limit [1]."""
-WRONG = 0.2
-"""Error above which a confident estimate is wrong [1]."""
+WRONG = 0.2  # error above which a confident estimate is wrong [1]
 _LARGEST = 10.0  # a larger relative error or claim counts as this value
 
 
@@ -119,8 +117,6 @@ ESTIMATOR = "StiffnessEstimator"
 
 @dataclass(frozen=True)
 class Row:
-    """A joint in a condition."""
-
     condition: Condition
     joint: Joint
     score: Score  # score over all instants of all seeds

@@ -11,8 +11,7 @@ from sigmahat.compare.misfits.job import Row, Score
 from sigmahat.compare.table import with_headings
 from sigmahat.files.tables import aligned, title, write_csv
 
-FIGURES = tuple(Score().figures)
-"""Names of the numbers of a score [%]."""
+FIGURES = tuple(Score().figures)  # names of the numbers of a score [%]
 IN_FILE = {"wrong": "confident and over 20 % wrong"}
 """Titles in a file, if a title is longer than the name."""
 
