@@ -1,7 +1,6 @@
 """Figures 3 to 12 of the paper, a summary of the AwAS, and all figures by their names."""
 
-from collections.abc import Callable, Mapping, Sequence
-from functools import partial
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -10,7 +9,7 @@ from matplotlib.figure import Figure
 
 from sigmahat.fmi.master import Recording
 from sigmahat.paper.figures import panels
-from sigmahat.paper.figures.panels import EVERYTHING, STIFFNESS, TORQUE, TRUE, Array, line, window
+from sigmahat.paper.figures.panels import EVERYTHING, STIFFNESS, TORQUE, TRUE, line, window
 from sigmahat.plotting.style import BLUE, GREEN, SKY, VERMILION, math_axis
 from sigmahat.runs.scenario import nominal_awas
 
@@ -20,43 +19,50 @@ _LAST = 1 / 3  # fraction of a run that is shown against the deformation: an est
 _DOTS: dict[str, Any] = {"linestyle": "", "marker": ".", "markersize": 3}
 _COUNT = 80  # number of dots, small enough that the truth is visible between the dots
 
-Draw = Callable[[Axes, slice], object]  # draws some of the samples
+Panel = Callable[[Axes, Recording], object]
+Lines = Callable[[Axes, Recording, slice], object]  # draws some of the samples
 
 
-def _signals(t: Array, signals: Sequence[tuple[Array, Mapping[str, Any]]], label: str) -> Draw:
-    def draw(axes: Axes, shown: slice) -> None:
-        for values, style in signals:
-            line(axes, t[shown], values[shown], **style)
-        axes.set_ylabel(label)
+def _stacked(*every: Panel) -> Callable[[Recording], Figure]:
+    """The figure with these panels, one below the other."""
+
+    def draw(recording: Recording) -> Figure:
+        figure, axes = panels.time_panels(len(every))
+        for own, panel in zip(axes, every, strict=True):
+            panel(own, recording)
+        return figure
 
     return draw
 
 
-def _whole_and_part(draw: Draw, part: slice, title: str, columns: int | None = 1) -> Figure:
-    """A panel with all samples, and a panel with a part of them, which has the title.
+def _whole(lines: Lines, columns: int = 1) -> Panel:
+    """A panel with all samples, and a legend of so many columns."""
 
-    columns  of the legend; None: the legend is above the lines
-    """
-    figure, (whole, below) = panels.time_panels(2)
-    draw(whole, EVERYTHING)
-    draw(below, part)
-    below.set_title(title, fontsize=9)
-    if columns is None:
-        panels.legend_above(whole)
-    else:
-        whole.legend(ncols=columns)
-    return figure
+    def panel(axes: Axes, recording: Recording) -> None:
+        lines(axes, recording, EVERYTHING)
+        axes.legend(ncols=columns)
+
+    return panel
 
 
-def _one_panel(draw: Callable[[Axes, Recording], object]) -> Callable[[Recording], Figure]:
-    """The figure with nothing but this panel."""
+def _part(lines: Lines, title: str, part: Callable[[Recording], slice]) -> Panel:
+    """A panel with a part of the samples, which has the title."""
 
-    def draw_figure(recording: Recording) -> Figure:
-        figure, (axes,) = panels.time_panels(1)
-        draw(axes, recording)
-        return figure
+    def panel(axes: Axes, recording: Recording) -> None:
+        lines(axes, recording, part(recording))
+        axes.set_title(title, fontsize=9)
 
-    return draw_figure
+    return panel
+
+
+def _reversal(signal: str, half_width: float) -> Callable[[Recording], slice]:
+    """Samples around the first change of the sign of a signal of the plant."""
+
+    def part(recording: Recording) -> slice:
+        t = recording.t
+        return window(t, panels.first_reversal(t, recording.plant[signal]), half_width)
+
+    return part
 
 
 def deformation(axes: Axes, recording: Recording) -> None:
@@ -66,46 +72,32 @@ def deformation(axes: Axes, recording: Recording) -> None:
     panels.legend_above(axes)
 
 
-def velocity(recording: Recording) -> Figure:
-    """Figure 4: motor velocity, true, differenced, and from the modified Kalman filter.
-
-    The second panel shows a reversal of the motor, where the quantisation is largest compared with
-    the velocity.
-    """
-    t, true = recording.t, recording.plant["theta_dot"]
-    differenced = np.diff(recording.plant["theta_measured"], prepend=0.0) / (t[1] - t[0])
+def velocity(axes: Axes, recording: Recording, shown: slice) -> None:
+    """Figure 4: motor velocity, true, differenced, and from the modified Kalman filter."""
+    t, plant = recording.t, recording.plant
+    differenced = np.diff(plant["theta_measured"], prepend=0.0) / (t[1] - t[0])
     differenced[0] = 0.0
-    signals = [
-        (true, TRUE),
+    filtered = recording.estimators["RESIDUAL"]["theta_dot"]
+    for values, style in (
+        (plant["theta_dot"], TRUE),
         (differenced, {"label": r"differenced, $\Delta\theta/T$", **_HELD}),
-        (
-            recording.estimators["RESIDUAL"]["theta_dot"],
-            {"color": VERMILION, "label": "modified kinematic Kalman filter"},
-        ),
-    ]
-    part = window(t, panels.first_reversal(t, true), 0.05)
-    draw = _signals(t, signals, r"motor velocity $\dot\theta$ [rad/s]")
-    return _whole_and_part(draw, part, "at a reversal")
+        (filtered, {"color": VERMILION, "label": "modified kinematic Kalman filter"}),
+    ):
+        line(axes, t[shown], values[shown], **style)
+    axes.set_ylabel(r"motor velocity $\dot\theta$ [rad/s]")
 
 
-def flexibility_torque(recording: Recording) -> Figure:
+def flexibility_torque(axes: Axes, recording: Recording, shown: slice) -> None:
     """Figure 5: flexibility torque, true, from the residual, from the sensor, and as fitted."""
-    t, plant, estimate = recording.t, recording.plant, recording.estimators["RESIDUAL"]
-    signals = [
+    plant, estimate = recording.plant, recording.estimators["RESIDUAL"]
+    for values, style in (
         (estimate["tau_e_residual"], {"color": SKY, "label": r"residual $\gamma r_e$"}),
         (plant["tau_e_measured"], {"color": GREEN, "label": "sensor"}),
         (plant["tau_e"], TRUE),
         (estimate["tau_e"], {"color": VERMILION, "label": r"fitted, $f(\theta_c, \phi)$"}),
-    ]
-    part = window(t, panels.first_reversal(t, plant["tau_e"]), 0.25)
-    draw = _signals(t, signals, TORQUE)
-    return _whole_and_part(draw, part, "where the torque changes sign", columns=2)
-
-
-def stiffness(recording: Recording) -> Figure:
-    """Figure 6: stiffness, true and estimated in the three modalities, and its start-up."""
-    draw = partial(panels.stiffness_lines, recording)
-    return _whole_and_part(draw, window(recording.t, 0.0, 0.3), "start-up", columns=2)
+    ):
+        line(axes, recording.t[shown], values[shown], **style)
+    axes.set_ylabel(TORQUE)
 
 
 def stability_factor(axes: Axes, recording: Recording) -> None:
@@ -143,76 +135,54 @@ def lever_arm(axes: Axes, recording: Recording) -> None:
     axes.legend()
 
 
-_MOST_WRONG = "where the nominal torque is most wrong"
+def nominal_torque(axes: Axes, recording: Recording, shown: slice = EVERYTHING) -> None:
+    """Figure 11: flexibility torque, by the nominal data and from the sensor."""
+    for values, style in (
+        (recording.plant["tau_e_measured"], {"color": GREEN, "label": "sensor"}),
+        (recording.plant["tau_e"], {**TRUE, "linewidth": 1.5}),
+        (nominal_awas(recording)["tau_e"], _NOMINAL),
+    ):
+        line(axes, recording.t[shown], values[shown], **style)
+    axes.set_ylabel(TORQUE)
 
 
-def _nominal_torque(recording: Recording) -> tuple[Draw, slice]:
-    """A function that draws the torque, and the samples where the nominal data are most wrong."""
-    plant, nominal = recording.plant, nominal_awas(recording)["tau_e"]
-    signals = [
-        (plant["tau_e_measured"], {"color": GREEN, "label": "sensor"}),
-        (plant["tau_e"], {**TRUE, "linewidth": 1.5}),
-        (nominal, _NOMINAL),
-    ]
-    centre = float(recording.t[np.argmax(np.abs(nominal - plant["tau_e"]))])
-    return _signals(recording.t, signals, TORQUE), window(recording.t, centre, 0.5)
+def _most_wrong(recording: Recording) -> slice:
+    """Samples where the nominal torque is most wrong."""
+    error = np.abs(nominal_awas(recording)["tau_e"] - recording.plant["tau_e"])
+    return window(recording.t, float(recording.t[np.argmax(error)]), 0.5)
 
 
-def nominal_torque(recording: Recording) -> Figure:
-    """Figure 11: flexibility torque, by the nominal data and from the sensor.
-
-    The second panel shows where the nominal data are most wrong.
-    """
-    return _whole_and_part(*_nominal_torque(recording), _MOST_WRONG, columns=None)
+_MOST_WRONG = _part(nominal_torque, "where the nominal torque is most wrong", _most_wrong)
 
 
-def nominal_stiffness(recording: Recording) -> Figure:
-    """Figure 12: stiffness, true, by the nominal data, and estimated in the three modalities.
+def _legend_above(panel: Panel) -> Panel:
+    def with_legend(axes: Axes, recording: Recording) -> None:
+        panel(axes, recording)
+        panels.legend_above(axes)
 
-    The second panel shows the part with the largest stiffness.
-    """
+    return with_legend
+
+
+def nominal_stiffness(axes: Axes, recording: Recording, shown: slice) -> None:
+    """Figure 12: stiffness, true, by the nominal data, and estimated in the three modalities."""
+    line(axes, recording.t[shown], nominal_awas(recording)["sigma"][shown], **_NOMINAL)
+    panels.stiffness_lines(axes, recording, shown)
+
+
+def _largest_stiffness(axes: Axes, recording: Recording) -> None:
+    """The part of figure 12 with the largest stiffness."""
     t, true = recording.t, recording.plant["sigma"]
     shown = window(t, float(t[np.argmax(np.where(t > 1.0, true, 0.0))]), 2.0)
-    draw = partial(_nominal_stiffness, recording)
-    figure = _whole_and_part(draw, shown, "where the stiffness is largest", columns=5)
-    figure.axes[1].set_ylim(0.95 * true[shown].min(), 1.2 * true[shown].max())
-    return figure
-
-
-def _nominal_stiffness(recording: Recording, axes: Axes, shown: slice) -> None:
-    line(axes, recording.t[shown], nominal_awas(recording)["sigma"][shown], **_NOMINAL)
-    panels.stiffness_lines(recording, axes, shown)
-
-
-def experiment(recording: Recording) -> Figure:
-    """Figures 9 to 12 below each other, and the relative error of each estimate."""
-    figure, axes = panels.time_panels(5)
-    deformation(axes[0], recording)
-    lever_arm(axes[1], recording)
-    draw, part = _nominal_torque(recording)
-    draw(axes[2], part)
-    axes[2].set_title(_MOST_WRONG, fontsize=9)
-    panels.legend_above(axes[2])
-    _nominal_stiffness(recording, axes[3], EVERYTHING)
-    axes[3].legend(ncols=5)
-    panels.error_lines(axes[4], recording)
-    return figure
-
-
-def summary(recording: Recording) -> Figure:
-    """Stiffness, true and estimated, and the relative error of each estimate."""
-    figure, (above, below) = panels.time_panels(2)
-    panels.stiffness_lines(recording, above, EVERYTHING)
-    above.legend(ncols=2)
-    panels.error_lines(below, recording)
-    return figure
+    nominal_stiffness(axes, recording, shown)
+    axes.set_title("where the stiffness is largest", fontsize=9)
+    axes.set_ylim(0.95 * true[shown].min(), 1.2 * true[shown].max())
 
 
 def transmission(recording: Recording) -> Figure:
     """One flexible transmission: stiffness over time, the curves, and the relative errors."""
     figure = Figure(figsize=(7.2, 8.7), layout="constrained")
     axes = figure.subplot_mosaic([["time", "time"], ["torque", "stiffness"], ["errors", "errors"]])
-    panels.stiffness_lines(recording, axes["time"], EVERYTHING, thin=True)
+    panels.stiffness_lines(axes["time"], recording, EVERYTHING, thin=True)
     axes["time"].legend(ncols=3)
     styles = {name: str(style["color"]) for name, style in panels.estimator_styles(recording)}
     for panel, output in (("torque", "tau_e"), ("stiffness", "sigma")):
@@ -296,19 +266,35 @@ def _last_part(recording: Recording) -> str:
 
 
 FIGURES: dict[str, Callable[[Recording], Figure]] = {
-    "fig3-deformation": _one_panel(deformation),
-    "fig4-velocity": velocity,
-    "fig5-flexibility-torque": flexibility_torque,
-    "fig6-stiffness": stiffness,
-    "fig7-stability-factor": _one_panel(stability_factor),
-    "fig8-constant-factors": _one_panel(constant_factors),
-    "fig9-deformation": _one_panel(deformation),
-    "fig10-lever-arm": _one_panel(lever_arm),
-    "fig11-flexibility-torque": nominal_torque,
-    "fig12-stiffness": nominal_stiffness,
+    "fig3-deformation": _stacked(deformation),
+    "fig4-velocity": _stacked(
+        _whole(velocity),
+        # Where the quantisation is largest compared with the velocity.
+        _part(velocity, "at a reversal", _reversal("theta_dot", 0.05)),
+    ),
+    "fig5-flexibility-torque": _stacked(
+        _whole(flexibility_torque, 2),
+        _part(flexibility_torque, "where the torque changes sign", _reversal("tau_e", 0.25)),
+    ),
+    "fig6-stiffness": _stacked(
+        _whole(panels.stiffness_lines, 2),
+        _part(panels.stiffness_lines, "start-up", lambda each: window(each.t, 0.0, 0.3)),
+    ),
+    "fig7-stability-factor": _stacked(stability_factor),
+    "fig8-constant-factors": _stacked(constant_factors),
+    "fig9-deformation": _stacked(deformation),
+    "fig10-lever-arm": _stacked(lever_arm),
+    "fig11-flexibility-torque": _stacked(_legend_above(nominal_torque), _MOST_WRONG),
+    "fig12-stiffness": _stacked(_whole(nominal_stiffness, 5), _largest_stiffness),
     "transmission": transmission,
-    "summary": summary,
-    "experiment": experiment,
+    "summary": _stacked(_whole(panels.stiffness_lines, 2), panels.error_lines),
+    "experiment": _stacked(
+        deformation,
+        lever_arm,
+        _legend_above(_MOST_WRONG),
+        _whole(nominal_stiffness, 5),
+        panels.error_lines,
+    ),
     "antagonistic": antagonistic,
 }
 """Functions from the recording of a scenario to a figure, which no window manager holds."""

@@ -46,7 +46,7 @@ def line(axes: Axes, t: Array, values: Array, **style: Any) -> None:
     axes.margins(x=0.01)
 
 
-def stiffness_lines(recording: Recording, axes: Axes, window: slice, thin: bool = False) -> None:
+def stiffness_lines(axes: Axes, recording: Recording, window: slice, thin: bool = False) -> None:
     """True stiffness, and the estimate of each modality.
 
     thin  for a true stiffness that oscillates so fast that a wide line would fill an area
