@@ -1,7 +1,7 @@
 """What several commands share: options, the folder they write to, progress, errors in one line.
 
-A command with `@json_option` and `@quiet_option` ends with `answer(text, values)`, and needs
-nothing else for these options.
+A command with `@answer_options` ends with `answer(text, values)`, and needs nothing else for these
+options.
 """
 
 from __future__ import annotations
@@ -126,6 +126,10 @@ def _flag(name: str, text: str) -> Callable[[_Command], _Command]:
 
 json_option = _flag("--json", "Print the result as JSON, and no warnings.")
 quiet_option = _flag("--quiet", "Print nothing but errors.")
+
+
+def answer_options(command: _Command) -> _Command:
+    return json_option(quiet_option(command))
 
 
 def answer(text: str, values: object = None, head: str = "") -> None:

@@ -125,8 +125,7 @@ def open_page(log: Path, config: Path | None, port: int) -> None:
 @common.log_argument
 @common.config_option("File from `sigmahat init`.")
 @common.joint_option
-@common.json_option
-@common.quiet_option
+@common.answer_options
 def check(log: Path, config: Path | None, joint: str) -> int:
     """Find likely errors in the configuration of LOG, and name the keys to look at.
 
@@ -164,8 +163,7 @@ def _checked(log: Path, config: Path, joint: str) -> Checked:
     help="Also identify K_t; needs tau in A, and a torque sensor, which is taken as exact.",
 )
 @click.option("--dry-run", is_flag=True, help="Do not change the configuration.")
-@common.json_option
-@common.quiet_option
+@common.answer_options
 def identify(
     log: Path, config: Path | None, joint: str, torque_constant: bool, dry_run: bool
 ) -> None:

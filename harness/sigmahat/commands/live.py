@@ -49,8 +49,7 @@ if TYPE_CHECKING:
     type=common.PATH,
     help="Go on from what was learned before: a folder of results, or its state.json.",
 )
-@common.json_option
-@common.quiet_option
+@common.answer_options
 def live(
     config: Path,
     source: str,

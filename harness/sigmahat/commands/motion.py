@@ -57,8 +57,7 @@ def _limit(name: str, text: str) -> click.Option:
 )
 @common.out_option("Folder to write into.", "motion")
 @click.option("--joint", metavar="NAME", default="", help="Which of several joints of CONFIG.")
-@common.json_option
-@common.quiet_option
+@common.answer_options
 def motion(
     config: Path | None,
     angle: float,

@@ -34,8 +34,7 @@ if TYPE_CHECKING:
     help="Write the estimates as messages, too: estimate.mcap, for Foxglove and PlotJuggler.",
 )
 @common.joint_option
-@common.json_option
-@common.quiet_option
+@common.answer_options
 def estimate(
     log: Path,
     config: Path | None,
@@ -127,8 +126,7 @@ def _import(module: str) -> None:
     help="What was learned: its folder, or state.json.  [default: sigmahat-results/CONFIG]",
 )
 @common.joint_option
-@common.json_option
-@common.quiet_option
+@common.answer_options
 def validate(log: Path, config: Path, start_from: Path | None, joint: str) -> int:
     """Check with LOG what was learned from another log of the same joint.
 

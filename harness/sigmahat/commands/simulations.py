@@ -20,8 +20,7 @@ def _names(_: click.Context, __: click.Parameter, begin: str) -> list[str]:
     "--seeds", default=1, type=common.COUNT, help="Number of runs, each with other noise."
 )
 @common.out_option("Folder for figures and CSV files.", "SCENARIO")
-@common.json_option
-@common.quiet_option
+@common.answer_options
 def reproduce(scenario: str, seeds: int, out: Path | None) -> None:
     """Run a scenario; print its table, draw its figures.
 
@@ -78,8 +77,7 @@ def reproduce(scenario: str, seeds: int, out: Path | None) -> None:
 )
 @click.option("--jobs", type=common.COUNT, help="Processes to use.  [default: all cores]")
 @common.out_option("Folder for figure and CSV file.", "compare")
-@common.json_option
-@common.quiet_option
+@common.answer_options
 def compare(misfits: bool, seeds: int, jobs: int | None, out: Path | None) -> None:
     """Compare the estimation methods on joints with wrong motor data.
 
@@ -194,8 +192,7 @@ def _listed(_: click.Context, __: click.Parameter, text: str | None) -> tuple[st
     "--scheduler", metavar="ADDRESS", help="Dask scheduler, tcp://host:port.  [default: all cores]"
 )
 @common.out_option("Folder for table and figures.", "sweep")
-@common.json_option
-@common.quiet_option
+@common.answer_options
 def sweep(
     plan: Path | None,
     scenario: tuple[str, ...],

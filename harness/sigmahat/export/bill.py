@@ -7,7 +7,7 @@ bill has no time, and its serial number is computed from the files.
 import hashlib
 import re
 from collections.abc import Iterable
-from email.parser import Parser
+from importlib.metadata import distributions
 from importlib.metadata import version as installed_version
 from pathlib import Path
 from uuid import NAMESPACE_URL, uuid5
@@ -94,10 +94,8 @@ def _packages(files: Iterable[Path]) -> Iterable[Component]:
     wheel = next((file for file in files if file.suffix == ".whl"), None)
     if wheel is None:
         raise FileNotFoundError("the release has no wheel; make it before its bill of materials")
-    with ZipFile(wheel) as archive:
-        (name,) = (each for each in archive.namelist() if each.endswith(".dist-info/METADATA"))
-        metadata = Parser().parsestr(archive.read(name).decode())
-    for requirement in metadata.get_all("Requires-Dist", []):
+    (packed,) = distributions(path=[str(wheel)])
+    for requirement in packed.requires or ():
         package = re.match(r"[\w.-]+", requirement)
         assert package is not None
         yield Component(

@@ -27,12 +27,8 @@ def sensors(configuration: Configuration | None, limits: Limits) -> Sensors:
         return Sensors(1.0, (_COUNTS, _COUNTS), 0.02, noise, _PERIOD)
     fmu = installed("StiffnessEstimator")
     every = fmu.parameters(parameters(fmu, configuration))
-    gamma, theta, q, gain, T = (
-        float(every[name])
-        for name in (
-            "motor.gamma", "encoder.theta", "encoder.q", "prior.torque_gain", "samplePeriod",
-        )
-    )  # fmt: skip
+    names = ("motor.gamma", "encoder.theta", "encoder.q", "prior.torque_gain", "samplePeriod")
+    gamma, theta, q, gain, T = (float(every[name]) for name in names)
     if "noise.tau" in configuration.parameters:
         noise = abs(gamma) * float(every["noise.tau"])
     return Sensors(gamma, (theta, q), gain, noise, T or _PERIOD)

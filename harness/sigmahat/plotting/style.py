@@ -11,12 +11,7 @@ from numpy.typing import NDArray
 BLUE, VERMILION, GREEN, ORANGE = "#0072B2", "#D55E00", "#009E73", "#E69F00"
 SKY, PURPLE, BLACK = "#56B4E9", "#CC79A7", "#000000"
 
-_CYCLE = (BLUE, VERMILION, GREEN, ORANGE, SKY, PURPLE, BLACK)  # neighbours are far apart
-
-
-def cycle(count: int) -> list[str]:
-    """Colours for a number of lines; the colours begin again after the seventh."""
-    return [_CYCLE[i % len(_CYCLE)] for i in range(count)]
+CYCLE = (BLUE, VERMILION, GREEN, ORANGE, SKY, PURPLE, BLACK)  # neighbours are far apart
 
 
 @dataclass(frozen=True)

@@ -27,15 +27,15 @@ def other_joint(experiment: Experiment) -> Experiment:
     inertia, friction, link, stiffness = np.exp(
         rng.standard_normal(4) * (0.25, 0.4, 0.3, 0.3)
     ).tolist()
-    return experiment.scaled(
-        {
-            "motor.B": inertia,
-            "motor.D_theta": friction,
-            "link.M": link,
-            "spring.k_s" if experiment.joint is AWAS else "spring.k_1": stiffness,
-            "motor.tau_coulomb": 2 * rng.uniform(),
-        }
-    )
+    factors = {
+        "motor.B": inertia,
+        "motor.D_theta": friction,
+        "link.M": link,
+        "spring.k_s" if experiment.joint is AWAS else "spring.k_1": stiffness,
+        "motor.tau_coulomb": 2 * rng.uniform(),
+    }
+    plant = experiment.plant
+    return experiment.with_plant({name: f * plant[name] for name, f in factors.items()})
 
 
 def all_misfits(experiment: Experiment) -> Experiment:

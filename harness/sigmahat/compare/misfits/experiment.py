@@ -120,10 +120,6 @@ class Experiment:
     def with_estimator(self, changed: Mapping[str, Value]) -> Experiment:
         return replace(self, estimator={**self.estimator, **changed})
 
-    def scaled(self, factors: Mapping[str, float]) -> Experiment:
-        """The experiment with start values of the plant multiplied by factors [1]."""
-        return self.with_plant({name: f * self.plant[name] for name, f in factors.items()})
-
 
 def draw(joint: Joint, seed: int) -> Experiment:
     """An experiment without misfits, whose motion and errors of motor data are random.

@@ -10,10 +10,10 @@ from matplotlib.patches import Patch, Rectangle
 from sigmahat.compare.misfits.conditions import Group
 from sigmahat.compare.misfits.experiment import JOINTS
 from sigmahat.compare.misfits.job import DANGEROUS_CLAIM, DANGEROUS_ERROR, Row
-from sigmahat.plotting.style import cycle
+from sigmahat.plotting.style import CYCLE
 
 _MARKERS = dict(zip((joint.name for joint in JOINTS), "o^s", strict=True))
-_COLORS = dict(zip(Group, cycle(len(Group)), strict=True))
+_COLORS = dict(zip(Group, CYCLE, strict=True))
 _GREY = "#888888"
 _LIMITS = 0.05, 100.0  # of both axes, wider if a row needs it [%]
 
