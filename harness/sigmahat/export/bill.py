@@ -22,6 +22,8 @@ from cyclonedx.output import make_outputter
 from cyclonedx.schema import OutputFormat, SchemaVersion
 from packageurl import PackageURL
 
+from sigmahat.files.output import sha256
+
 NAME = "sigmahat.cdx.json"
 _BUILD_TOOLS = ("ziglang", "scikit-build-core", "wheel", "casadi", "cyclonedx-python-lib")
 _ARCHIVES = (".fmu", ".ssp", ".zip", ".whl", ".gz")
@@ -51,7 +53,7 @@ def write(out: Path, release: Path, version: str) -> None:
         bom.components.add(entry)
         bom.register_dependency(entry, _contents(file, own, headers, equations, packages))
     bom.register_dependency(product, made)
-    digest = hashlib.sha256("".join(map(_sha256, files)).encode()).hexdigest()
+    digest = hashlib.sha256("".join(map(sha256, files)).encode()).hexdigest()
     bom.serial_number = uuid5(NAMESPACE_URL, f"sigmahat {version} {digest}")
     bom.metadata.timestamp = None  # type: ignore[assignment] # the schema does not ask for one
     text = make_outputter(bom, OutputFormat.JSON, SchemaVersion.V1_6).output_as_string(indent=1)
@@ -78,14 +80,10 @@ def _tool(name: str) -> Component:
     return tool
 
 
-def _sha256(file: Path) -> str:
-    return hashlib.sha256(file.read_bytes()).hexdigest()
-
-
 def _file(file: Path, release: Path) -> Component:
     name = file.relative_to(release).as_posix()
     entry = _component(name, None, ComponentType.FILE, None)
-    entry.hashes.add(HashType(alg=HashAlgorithm.SHA_256, content=_sha256(file)))
+    entry.hashes.add(HashType(alg=HashAlgorithm.SHA_256, content=sha256(file)))
     return entry
 
 

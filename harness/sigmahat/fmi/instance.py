@@ -220,7 +220,7 @@ class Slave:
         """Instantiates the FMU. Raises FmuError with the FMU's own message if it refuses."""
         self.fmu = fmu
         self.name = name
-        self._messages: list[str] = []
+        self.errors: list[str] = []  # their texts, for the exception
         self._callbacks = fmi2.fmi2CallbackFunctions()
         self._callbacks.logger = _LOGGER
         self._callbacks.componentEnvironment = id(self)
@@ -306,15 +306,8 @@ class Slave:
         except FMICallException as error:
             raise self.failure(error.function) from error
 
-    def take_message(self, status: int, text: str) -> None:
-        """Logs a warning, and keeps the text of an error for the exception."""
-        if status == fmi2.fmi2Warning:
-            _log.warning("%s: %s", self.name, text)
-        elif status > fmi2.fmi2Warning:
-            self._messages.append(text)
-
     def _explain(self, failure: str) -> str:
-        return f"{self.name}: {'; '.join(self._messages) or failure}"
+        return f"{self.name}: {'; '.join(self.errors) or failure}"
 
 
 def _close(library: list[fmi2.FMU2Slave], folder: str) -> None:
@@ -336,8 +329,11 @@ def _on_message(
     slave = _slaves.get(environment or 0)
     if slave is None:  # an FMU that does not know its environment
         slave = next((each for each in _slaves.values() if each.name == name), None)
-    if slave is not None:
-        slave.take_message(status, message.decode("utf-8", "replace"))
+    text = message.decode("utf-8", "replace")
+    if slave is not None and status == fmi2.fmi2Warning:
+        _log.warning("%s: %s", slave.name, text)
+    elif slave is not None and status > fmi2.fmi2Warning:
+        slave.errors.append(text)
 
 
 # One logger for all slaves, for the whole process: FMPy's proxy stores only the last logger, and

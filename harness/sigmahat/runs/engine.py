@@ -32,15 +32,12 @@ def run(
     With variants the estimators that only figures need run too. From time to time progress is
     called with the number of steps made since the last call. Raises what simulate() raises.
     """
-    plant = replace(scenario.plant, start={**_noise(scenario), **scenario.plant.start, SEED: seed})
+    start: dict[str, Value] = {**scenario.plant.start, SEED: seed}
+    if SAMPLE_PERIOD in named(str(scenario.plant.fmu)).variables:
+        start = {SAMPLE_PERIOD: scenario.T, **start}
+    plant = replace(scenario.plant, start=start)
     estimators = {**scenario.estimators, **(scenario.variants if variants else {})}
     return simulate(plant, estimators, scenario.T, scenario.steps, progress)
-
-
-def _noise(scenario: Scenario) -> dict[str, Value]:
-    """Start values with which the noise is white at the sampling times of the scenario."""
-    has_period = SAMPLE_PERIOD in named(str(scenario.plant.fmu)).variables
-    return {SAMPLE_PERIOD: scenario.T} if has_period else {}
 
 
 def measured(
