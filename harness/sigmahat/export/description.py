@@ -98,15 +98,19 @@ def write(
     listed = SubElement(root.findall("CoSimulation")[0], "SourceFiles")
     for name in file_names(for_version(sources, 2)):
         SubElement(listed, "File", name=name)
-    guid = complete(root)
-    table = c_table(root, struct, STORAGE[storage](root), guid)
-    (out / "variables.h").write_text(table, encoding="utf-8")
-    _write_xml(root, out / "modelDescription.xml")
+    write_completed(root, struct, storage, out / "modelDescription.xml", out / "variables.h")
     names = file_names(for_version(sources, 3))
     (out / "fmi3").mkdir(exist_ok=True)
     _write_xml(for_fmi3(root), out / "fmi3/modelDescription.xml")
     _write_xml(build_description(template.stem, names), out / "fmi3/buildDescription.xml")
     _write_xml(terminals_and_icons(root), out / "fmi3/terminalsAndIcons.xml")
+
+
+def write_completed(root: Element, struct: str, storage: str, xml: Path, table: Path) -> None:
+    """Complete a rendered template; write it, and its table of variables in C, as ``write``."""
+    guid = complete(root)
+    table.write_text(c_table(root, struct, STORAGE[storage](root), guid), encoding="utf-8")
+    _write_xml(root, xml)
 
 
 def _write_xml(root: Element, file: Path) -> None:

@@ -26,30 +26,26 @@ def write(template: Path, out: Path, version: str) -> None:
 
     Raises as `templates.render` does, and ``FileNotFoundError`` for an FMU without an icon.
     """
-    for fmi, names in _ICONS.items():
-        folder = out / f"fmi{fmi}"
-        png, svg = (folder / name for name in names)
-        for file in (png, svg, folder / "documentation" / "index.html"):
-            file.parent.mkdir(parents=True, exist_ok=True)
-        for file in (png, svg):
-            shutil.copy(template.parent / "icons" / f"{template.stem}{file.suffix}", file)
-        _write_page(template, folder / "documentation", svg, version, fmi)
-
-
-def _write_page(template: Path, folder: Path, svg: Path, version: str, fmi: int) -> None:
     root = templates.render(template, version)
     (experiment,) = root.findall("DefaultExperiment")
-    environment = templates.environment(template.parent / "documentation")
-    page = environment.get_template("page.html").render(
-        identifier=template.stem,
-        fmi=fmi,
-        icon=os.path.relpath(svg, folder).replace(os.sep, "/"),
-        kind="plant" if template.stem.endswith("Plant") else "estimator",
-        experiment=experiment.attrib,
-        variables={c: table(root, c) for c in ("input", "output", "parameter")},
-        **{key: root.attrib[key] for key in ("description", "version", "copyright", "license")},
-    )
-    (folder / "index.html").write_text(page, encoding="utf-8")
+    page = templates.environment(template.parent / "documentation").get_template("page.html")
+    for fmi, icons in _ICONS.items():
+        index = out / f"fmi{fmi}" / "documentation" / "index.html"
+        for icon in icons:
+            file = out / f"fmi{fmi}" / icon
+            file.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(template.parent / "icons" / f"{template.stem}{file.suffix}", file)
+        text = page.render(
+            identifier=template.stem,
+            fmi=fmi,
+            icon=os.path.relpath(icons[1], "documentation").replace(os.sep, "/"),
+            kind="plant" if template.stem.endswith("Plant") else "estimator",
+            experiment=experiment.attrib,
+            variables={c: table(root, c) for c in ("input", "output", "parameter")},
+            **{key: root.attrib[key] for key in ("description", "version", "copyright", "license")},
+        )
+        index.parent.mkdir(parents=True, exist_ok=True)
+        index.write_text(text, encoding="utf-8")
 
 
 def table(root: Element, causality: str) -> dict[str, Any]:

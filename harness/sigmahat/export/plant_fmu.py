@@ -18,7 +18,7 @@ from xml.etree.ElementTree import Element
 import casadi as ca
 import fmpy
 
-from sigmahat.export import archive, c_variables, description, plant_codegen, templates
+from sigmahat.export import archive, description, plant_codegen, templates
 from sigmahat.export.c_variables import SAMPLE_PERIOD, SEED, is_of_every_plant
 from sigmahat.export.cross_compiler import FLAGS, HEADERS
 from sigmahat.fmi.installed import fmu as installed_fmu
@@ -192,7 +192,10 @@ def write_plant_fmu(
             path = folder / part
             shutil.rmtree(path) if path.is_dir() else path.unlink()
         sources = folder / "sources"
-        _write_description(plant, variables, folder / "modelDescription.xml", sources)
+        xml = folder / "modelDescription.xml"
+        root = ElementTree.parse(xml).getroot()
+        describe(plant, variables, root)
+        description.write_completed(root, "sh_plant", "arrays", xml, sources / "variables.h")
         plant_codegen.write(
             plant, list(plant.parameters), list(plant.inputs), list(plant.outputs), sources
         )
@@ -200,16 +203,3 @@ def write_plant_fmu(
         place.mkdir(parents=True)
         compile_folder(sources, place / f"{plant.name}{fmpy.sharedLibraryExtension}")
         archive.write(Path(fmu), archive.files_in(folder))
-
-
-def _write_description(
-    plant: PlantEquations, variables: Mapping[str, PlantVariable], xml: Path, sources: Path
-) -> None:
-    """Replaces the model description of the AwAS, and writes the table of variables in C."""
-    root = ElementTree.parse(xml).getroot()
-    describe(plant, variables, root)
-    guid = description.complete(root)
-    ElementTree.ElementTree(root).write(xml, encoding="UTF-8", xml_declaration=True)
-    places = c_variables.storage_in_arrays(root)
-    table = c_variables.c_table(root, "sh_plant", places, guid)
-    (sources / "variables.h").write_text(table, encoding="utf-8")
