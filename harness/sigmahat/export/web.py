@@ -59,24 +59,9 @@ def write(out: Path, page: Path, fmus: list[Path], cache: Path) -> None:
 
 
 def _described(fmu: Path, callbacks: Path, cache: Path) -> dict[str, Any]:
-    """Data of an FMU that the page needs, with the binary."""
-    with Fmu(fmu) as opened:
-        wasm = compile_wasm(Path(opened.folder), callbacks, cache)
-        return {
-            "name": opened.name,
-            "guid": opened.description.guid,
-            "variables": {name: _variable(v) for name, v in opened.variables.items()},
-            "wasm": base64.b64encode(wasm).decode("ascii"),
-        }
-
-
-def compile_wasm(folder: Path, callbacks: Path, cache: Path) -> bytes:
-    """The binary of an unpacked FMU as WebAssembly, with the C file of the page's callbacks.
-
-    ``cache`` and errors as ``write``.
-    """
-    with TemporaryDirectory() as scratch:
-        binary = Path(scratch) / "fmu.wasm"
+    """Data of an FMU that the page needs, with the binary and the page's callbacks in it."""
+    with Fmu(fmu) as opened, TemporaryDirectory() as scratch:
+        folder, binary = Path(opened.folder), Path(scratch) / "fmu.wasm"
         arguments: list[str | Path] = [
             *(_KIND, *cross_compiler.CODE),
             *(f"-I{each.resolve()}" for each in (folder / "sources", cross_compiler.HEADERS)),
@@ -85,7 +70,12 @@ def compile_wasm(folder: Path, callbacks: Path, cache: Path) -> bytes:
             *(f"-Wl,--export={name}" for name in FUNCTIONS),
         ]
         cross_compiler.compile_files(_TARGET, arguments, cache, Path(scratch))
-        return binary.read_bytes()
+        return {
+            "name": opened.name,
+            "guid": opened.description.guid,
+            "variables": {name: _variable(v) for name, v in opened.variables.items()},
+            "wasm": base64.b64encode(binary.read_bytes()).decode("ascii"),
+        }
 
 
 def _variable(variable: Any) -> dict[str, Any]:
