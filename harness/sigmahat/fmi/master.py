@@ -93,7 +93,9 @@ def simulate(
             return stack.enter_context(Slave(named(str(fmu)), name))
 
         plant_slave = instantiate(plant.fmu, "plant")
-        names, values = list(plant.inputs), _values(plant.inputs, t)
+        names, values = list(plant.inputs), np.empty((len(t), len(plant.inputs)))
+        for i, signal in enumerate(plant.inputs.values()):
+            values[:, i] = signal(t)
         inputs = plant_slave.fmu.references(names, "input")
         first = dict(zip(names, values[0].tolist(), strict=True))
         plant_slave.initialize({**plant.start, **first})
@@ -133,13 +135,6 @@ def _run_in_pieces(loop: SampleLoop, steps: int, progress: Callable[[int], objec
         took = time.perf_counter() - begin
         size = min(2 * size, _MOST) if took < _PIECE / 2 else max(size // 2, 1)
         first = end
-
-
-def _values(inputs: Mapping[str, Signal], t: NDArray[np.float64]) -> NDArray[np.float64]:
-    values = np.empty((len(t), len(inputs)))
-    for i, signal in enumerate(inputs.values()):
-        values[:, i] = signal(t)
-    return values
 
 
 def _connect(loop: SampleLoop, plant: Slave, slave: Slave, connections: Mapping[str, str]) -> None:

@@ -74,25 +74,18 @@ def estimator(start: Mapping[str, Value], sensor: str = "tau_e_measured") -> Est
     )
 
 
-def _modalities(start: Mapping[str, Value]) -> dict[str, EstimatorFmu]:
-    """The three modalities of section VI.B, and the modality Model of the FMU.
-
-    The MODEL of the paper is fed with (28) at the actual deformation (its footnote 1), like a
-    sensor without noise. The modality Model of the FMU has only the measured positions.
-    """
-    return {
+def simulation(
+    name: str, description: str, duration: float, retraction: float, start: Mapping[str, Value]
+) -> Scenario:
+    """Section VI.B."""
+    # The MODEL of the paper is fed with (28) at the actual deformation (its footnote 1), like a
+    # sensor without noise. The modality Model of the FMU has only the measured positions.
+    estimators = {
         "MODEL": estimator({"modality": "Sensor", **start}, sensor="tau_e"),
         "SENSOR": estimator({"modality": "Sensor", **start}),
         "RESIDUAL": estimator({"modality": "Residual", **start}),
         "MODEL-measured": estimator({"modality": "Model", **start}),
     }
-
-
-def simulation(
-    name: str, description: str, duration: float, retraction: float, start: Mapping[str, Value]
-) -> Scenario:
-    """Section VI.B."""
-    estimators = _modalities(start)
     constant = {"modality": "Residual", "rls.kind": "ConstantFactor", **start}
     return Scenario(
         name=name,
