@@ -28,14 +28,7 @@ def reproduce(scenario: str, seeds: int, out: Path | None) -> None:
     Example: sigmahat reproduce --scenario as-printed --seeds 20 --out as-printed
     """
     from sigmahat.files.output import output_folder
-    from sigmahat.paper.reproduction import (
-        as_dict,
-        conditions,
-        progress_length,
-        reproduce,
-        table,
-        write_results,
-    )
+    from sigmahat.paper.reproduction import as_dict, conditions, reproduce, table, write_results
     from sigmahat.runs.metrics import MSREP_IN_WORDS
 
     chosen = common.ready_scenario(scenario)
@@ -44,7 +37,7 @@ def reproduce(scenario: str, seeds: int, out: Path | None) -> None:
     out = out or Path("sigmahat-results", scenario)
     numbers = range(1, seeds + 1)
     with common.errors_in_one_line(out), output_folder(out) as folder:
-        with common.progress("Running", progress_length(chosen, numbers)) as bar:
+        with common.progress("Running", seeds if seeds > 1 else chosen.steps) as bar:
             result = reproduce(chosen, numbers, progress=bar.update)
         from sigmahat.paper.figures.catalogue import FIGURES
         from sigmahat.plotting.figure import save

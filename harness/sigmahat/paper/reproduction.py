@@ -40,14 +40,6 @@ class Result:
         return mean_interval([getattr(each[comparison], field) for each in self.indices])
 
 
-def progress_length(scenario: Scenario, seeds: Sequence[int]) -> int:
-    """Total of the progress of reproduce(): runs, or the steps of a single run.
-
-    seeds must not be empty.
-    """
-    return len(seeds) if len(seeds) > 1 else scenario.steps
-
-
 def reproduce(
     scenario: Scenario,
     seeds: Sequence[int],
@@ -58,7 +50,8 @@ def reproduce(
 
     seeds      one or more; several are spread over processes, by default one per processor.
                The result does not depend on the number of processes
-    progress   called now and then with what was done since the last call, see progress_length()
+    progress   called now and then with what was done since the last call: runs, but steps if there
+               is a single seed
 
     Raises what simulate() raises, and WorkerError if a process was ended from outside.
     """
