@@ -27,7 +27,7 @@ static void begin(sh_regression_state *state)
     sh_change *change = &state->change;
 
     change->changed = state->friction_drifts ? blocks->drifting : blocks->constant;
-    sh_information_restart(&change->changed, state->columns.spring, 1);
+    sh_information_restart(&change->changed, state->columns.spring, blocks->prior);
     change->evidence = change->blocks = 0;
 }
 

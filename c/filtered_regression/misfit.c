@@ -16,6 +16,7 @@ void sh_blocks_start(sh_regression_state *state)
     sh_information_start(&blocks->constant, state->columns.size, 1);
     sh_information_start(&blocks->drifting, state->columns.size, 1);
     sh_information_start(&blocks->recent, state->columns.size, 1);
+    blocks->prior = 1;
     blocks->length = sh_floor(SH_BLOCK / ((sh_real)K * design->T) + (sh_real)0.5);
     blocks->length = sh_fmin(sh_fmax(blocks->length, SH_SHORTEST_BLOCK), SH_LONGEST_BLOCK);
     sh_state_variable_filter_noise(design, blocks->length, K, &blocks->energy,
@@ -35,8 +36,9 @@ void sh_blocks_interrupt(sh_blocks *blocks)
 
 static void forget_blocks(sh_blocks *blocks, sh_real factor)
 {
-    sh_information_forget(&blocks->constant, factor, 1);
-    sh_information_forget(&blocks->drifting, factor, 1);
+    sh_information_forget(&blocks->constant, factor, SH_LEAST_INFORMATION);
+    sh_information_forget(&blocks->drifting, factor, SH_LEAST_INFORMATION);
+    blocks->prior *= factor;
     blocks->count *= factor;
 }
 
@@ -132,11 +134,13 @@ static sh_real chance(sh_real N)
     return N + SH_CHANCE * sh_sqrt(2 * N);
 }
 
-/* Sum of the squared errors of blocks over their variances, with the estimate. */
-static sh_real squares_without_prior(const sh_information *blocks, const sh_regression_state *state)
+/* Sum of the squared errors of blocks over their variances, with coefficients beta. The blocks contain a share of
+ * the prior, 0..1.
+ */
+static sh_real squares_of(const sh_information *blocks, const sh_real *beta, sh_real prior)
 {
-    return sh_information_squares(blocks, state->beta) -
-           sh_sum_of_products(state->beta, state->beta, state->columns.size);
+    return sh_information_squares(blocks, beta) -
+           prior * sh_sum_of_products(beta, beta, blocks->size);
 }
 
 /* Reduced chi-square of the recent blocks, if it is beyond chance; else 0, and while friction or the
@@ -151,7 +155,7 @@ static sh_real recent_misfit(const sh_regression_state *state, const sh_paramete
     if (N < SH_FIRST_BLOCKS || state->friction_drifts || p->regression.drift > 0) {
         return 0;
     }
-    squares = squares_without_prior(&blocks->recent, state);
+    squares = squares_of(&blocks->recent, state->beta, 1);
     return squares > chance(N) ? squares / N : 0;
 }
 
@@ -179,8 +183,8 @@ void sh_misfit_judge(sh_regression_state *state, const sh_parameters *p)
     if (!can_judge(state)) {
         return;
     }
-    q = squares_without_prior(state->friction_drifts ? &blocks->drifting : &blocks->constant,
-                              state) /
+    q = squares_of(state->friction_drifts ? &blocks->drifting : &blocks->constant, state->beta,
+                   blocks->prior) /
         (N - parameters / 2);
     t = chance(N) / N;
     state->misfit = sh_fmax(q, recent_misfit(state, p));

@@ -212,6 +212,7 @@ typedef struct {
     sh_information constant;     /* of the prior and blocks, parameters constant */
     sh_information drifting;     /* the same, friction may drift */
     sh_information recent;       /* of the prior and the last blocks */
+    sh_real prior;               /* share of the prior that is left in the first two, 0..1 */
     sh_real count, recent_count; /* effective number of blocks [1] */
     sh_real duration; /* of the blocks since data were last forgotten, as far as they count [s] */
     sh_real length;   /* rows of a block */

@@ -1,18 +1,35 @@
 """Detail 15 of FilteredRegression: a stiffness that changes is noticed and followed."""
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
 
 from c_library import Array, Estimator, Library
-from regression_joint import Joint, T
+from regression_joint import SETTINGS, STIFFNESS, Joint, MisfitJoint, T
 
 REGRESSION = {"method": 2, "rls.n": 3}
 CHANGE = 9
 AT = 15.0  # [s]
 WRONG_MOTOR = {"motor.D_theta": 1.3e-3, "prior.B": 0.1}
+
+
+@dataclass(frozen=True)
+class FreeLoad(MisfitJoint):
+    """The spring carries an inertia alone, so the deformation is proportional to the acceleration.
+
+    Another inertia of the motor, and no spring, then explain a run with two stiffnesses.
+    """
+
+    duration: float = 30.0
+    inertia: float = 0.1  # [kg.m2]
+
+    @property
+    def motion(self) -> tuple[Array, Array, Array, Array, Array]:
+        theta, theta_dot, theta_ddot, _, r = super().motion
+        phi = -self.inertia * theta_ddot / (STIFFNESS * self.stiffness(self.t))
+        return theta, theta_dot, theta_ddot, phi, r
 
 
 def step(factor: float) -> Callable[[Array], Array]:
@@ -51,6 +68,17 @@ def test_samples_of_the_changed_spring_do_not_spoil_the_motor(c: Library, factor
     error = np.abs(found["sigma"] / joint.sigma - 1)
     assert np.max(error[joint.t > AT + 3.0]) < 0.1
     assert found["B_hat"][-1] == pytest.approx(2.3e-5, rel=0.1)
+
+
+@pytest.mark.parametrize("factor", [2.0, 0.5, 1.3])
+@pytest.mark.parametrize("inertia", [0.05, 0.2])
+def test_a_change_under_a_free_load_is_followed(c: Library, inertia: float, factor: float) -> None:
+    """GIVEN motor data that are known to 3 %, THEN they tell the change from another inertia."""
+    joint = FreeLoad(inertia=inertia, stiffness=step(factor))
+    found = Estimator(c, {**SETTINGS, "prior.B": 0.03}).run(joint.measurements())
+    error = np.abs(found["sigma"] / joint.sigma - 1)
+    assert np.max(error[joint.t > AT + 3.0]) < 0.1
+    assert 14.0 < found["change_age"][-1] < 15.0
 
 
 def test_a_slow_change_is_followed(c: Library) -> None:

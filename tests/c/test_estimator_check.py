@@ -78,7 +78,7 @@ def damage(part: Any, member: str, place: int, value: int) -> None:
 @settings(max_examples=20, deadline=None)
 @pytest.mark.parametrize("member", INTEGERS_OF_FILTERED_REGRESSION)
 @given(
-    place=st.integers(0, 5), value=st.one_of(st.integers(-(2**31), -2), st.integers(65, 2**31 - 1))
+    place=st.integers(0, 5), value=st.one_of(st.integers(-(2**15), -2), st.integers(65, 2**15 - 1))
 )
 def test_a_damaged_member_is_found(c: Library, member: str, place: int, value: int) -> None:
     """An integer of a state of FilteredRegression is out of all that it can be."""

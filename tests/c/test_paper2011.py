@@ -77,24 +77,6 @@ def test_the_velocity_is_as_precise_at_a_large_position(c: Library, kind: int) -
     assert velocity[1] == pytest.approx(velocity[0], rel=1e-12, abs=1e-12)
 
 
-# The residual, after lost samples
-
-
-def test_after_lost_samples_the_residual_continues_from_its_last_value(c: Library) -> None:
-    """Also in the next step under the same load."""
-    gamma, T, K_I = 50.0, 1e-4, 200.0
-    motor = c.new("sh_motor_parameters", B=2.3e-5, D_theta=1e-3, gamma=gamma)
-    residual = c.new("sh_torque_residual")
-    step = c.lib.sh_torque_residual_step
-    c.lib.sh_torque_residual_start(residual, 0.2)
-    for _ in range(2000):
-        step(residual, motor, 0.0, 0.0, 0.2, K_I, T)
-    before = residual.r_e
-    c.lib.sh_torque_residual_resume(residual, 0.2)
-    assert residual.r_e == before
-    assert step(residual, motor, 0.0, 0.0, 0.2, K_I, T) == pytest.approx(gamma * before, rel=1e-6)
-
-
 # The basis, against the oracle and against its properties
 
 

@@ -61,8 +61,8 @@ def inverse(matrix: Long) -> Long:
 class Information:
     """sum w r r' over rows r = (x, u, y) of `size` columns x and two right-hand sides."""
 
-    def __init__(self, size: int, precision: float) -> None:
-        self.size, self.least = size, precision
+    def __init__(self, size: int, precision: float, least: float | None = None) -> None:
+        self.size, self.least = size, precision if least is None else least
         self.matrix: Long = np.diag(np.r_[np.full(size, precision), 0, 0]).astype(np.longdouble)
 
     def take(self, row: Long, w: float) -> None:
@@ -80,7 +80,7 @@ class Information:
         return rows, D, left[-1, -1]
 
     def fade(self, keep: float) -> None:
-        """No entry of D falls below the precision of the start."""
+        """No entry of D falls below the least one."""
         rows, D, rest = self.factors()
         self.matrix = (rows.T * np.maximum(D * keep, self.least)) @ rows
         self.matrix[-1, -1] += rest * keep
@@ -188,7 +188,8 @@ class Blocks:
         h = np.append(np.repeat(self.window, K), np.zeros(math.ceil(30 / (w * T))))
         filtered = [through(np.append(0.0, h), order, w, T) for order in (0, 2)]
         self.energy, self.energy_second = (float(np.sum(f**2) / np.sum(h**2)) for f in filtered)
-        self.all, self.walking = Information(n, 1), Information(n, 1)
+        self.all, self.walking = (Information(n, 1.0, LEAST) for _ in range(2))
+        self.prior = 1.0  # share of it that is left in both
         self.recent = Information(n, 1.0)
         self.count = self.recent_count = self.gained = 0.0
         self.rows: list[tuple[Long, float, float, float]] = []  # row, weight, factor, roughness
@@ -338,7 +339,8 @@ class Oracle:
             return
         sums = blocks.walking if self.friction_drifts else blocks.all
         of_prior = float(self.beta @ self.beta)
-        whole = self.q = (sums.squares(self.beta) - of_prior) / (N - len(self.live.chosen) / 2)
+        squares = sums.squares(self.beta) - blocks.prior * of_prior
+        whole = self.q = squares / (N - len(self.live.chosen) / 2)
         if recent >= 20 and not self.friction_drifts and self.p["regression.drift"] <= 0:
             squares = blocks.recent.squares(self.beta) - of_prior
             self.q = max(whole, squares / recent if squares > threshold(recent) else 0.0)
@@ -390,6 +392,7 @@ class Oracle:
             keep = math.exp(-gained * max(sudden, 5.0 if has_changed else 1.0) / memory)
             for sums in everything:
                 sums.fade(keep)
+            blocks.prior *= keep
             blocks.count *= keep
             self.surplus *= keep
             self.spread *= keep**2

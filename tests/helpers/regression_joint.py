@@ -153,4 +153,5 @@ class MisfitJoint(Joint):
         return theta, theta_dot, theta_ddot, phi, np.full(len(phi), 0.1)
 
     def spring(self, phi: Array, r: Array) -> tuple[Array, Array]:
-        return STIFFNESS * phi, np.full(len(phi), STIFFNESS)
+        sigma = STIFFNESS * self.stiffness(self.t)
+        return sigma * phi, sigma
