@@ -21,7 +21,16 @@ from recorded_logs import (
     write_log,
 )
 from sigmahat.cli import main
-from sigmahat.joint.curve import CURVE, Branch, curve_text, nearest, polynomial_in_words, read_curve
+from sigmahat.joint.curve import (
+    CURVE,
+    Branch,
+    Curve,
+    curve_text,
+    headline,
+    nearest,
+    polynomial_in_words,
+    read_curve,
+)
 from sigmahat.joint.sheet import Polynomial, start_of, with_knees
 from sigmahat.joint.stored import LearnedLog
 from sigmahat.logs.configuration import read_configuration
@@ -278,3 +287,15 @@ def test_the_start_values_are_the_curve() -> None:
     start = start_of(OF_KNEE)
     assert (start["rls.n"], start["rls.m"]) == (4, 2)
     assert start["rls.eta_0[1,1]"] == 3.0
+
+
+@pytest.mark.parametrize(
+    ("std", "text"),
+    [(5.0, "200 +- 9.8 N.m/rad"), (1e9, "cannot tell (200 +- 1.96e+09) N.m/rad")],
+)
+def test_an_interval_wider_than_the_stiffness_tells_nothing(std: float, text: str) -> None:
+    phi = np.array([-0.1, 0.0, 0.1])
+    spring = 200.0 + 0 * phi
+    branch = Branch(0.0, (-0.1, 0.1), phi, spring * phi, std * phi, spring, std + 0 * phi)
+    curve = Curve(Polynomial([1], [0], [[200.0]], [["N.m/rad"]], None, None), [branch])
+    assert headline(curve, "None") == f"{text} at 0 rad, confident"

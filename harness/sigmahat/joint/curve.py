@@ -208,7 +208,9 @@ def _plus_minus(branch: Branch) -> str:
     _, sigma, interval = stiffness_in_the_middle(branch)
     if interval is None:
         return f"{sigma:.4g}"
-    return f"{sigma:.4g} +- {(interval[1] - interval[0]) / 2:.3g}"
+    half = (interval[1] - interval[0]) / 2
+    text = f"{sigma:.4g} +- {half:.3g}"
+    return text if half < abs(sigma) else f"cannot tell ({text})"
 
 
 def stiffness_in_the_middle(branch: Branch) -> tuple[float, float, Range | None]:

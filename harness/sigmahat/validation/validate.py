@@ -345,4 +345,7 @@ def _verdict(result: Validation) -> Iterator[str]:
     elif result.agree:
         yield "the logs agree"
     else:
-        yield "the logs do not agree: the stiffness differs by more than its intervals explain"
+        yield (
+            "the logs do not agree: the stiffness differs by more than its intervals explain; "
+            "the configuration does not fit both logs, or the joint has changed between them"
+        )
