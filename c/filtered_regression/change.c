@@ -35,7 +35,7 @@ static void begin(sh_regression_state *state)
  * contradict what they say about the motor. The next posterior follows. It has the prior twice, as these data
  * contain it; what the blocks say soon outweighs it.
  */
-static void adopt(sh_regression_state *state)
+static void adopt(sh_regression_state *state, const sh_parameters *p)
 {
     sh_blocks *blocks = &state->blocks;
     sh_change *change = &state->change;
@@ -46,7 +46,7 @@ static void adopt(sh_regression_state *state)
     state->data = change->changed;
     state->surplus = state->spread = state->rounding = 0;
     state->noise.information = state->noise.gain = 0;
-    sh_refit_restart(state);
+    sh_refit_restart(state, p);
     change->following = 1;
     change->usual_misfit *=
         SH_SUDDEN_MISFIT; /* what was learned of the motor may not fit as well */
@@ -86,7 +86,7 @@ void sh_change_judge(sh_regression_state *state, const sh_parameters *p, sh_real
                                    2 * sh_fmin(changed / level, SH_LARGEST_EVIDENCE / 2) - 2,
                                0);
     if (change->evidence > SH_HAS_CHANGED * sh_sqrt(level) && change->following == 0) {
-        adopt(state);
+        adopt(state, p);
     } else if (!(change->evidence > 0) || change->blocks >= SH_LONGEST_TEST) {
         begin(state);
     }

@@ -113,9 +113,11 @@ static int is_knee(const sh_column *column)
     return column->kind == SH_COLUMN_KNEE || column->kind == SH_COLUMN_POSSIBLE_KNEE;
 }
 
-int sh_column_is_distinct(const sh_column *column, sh_real phi_min, sh_real phi_max)
+int sh_column_is_distinct(const sh_column *column, const sh_parameters *p, sh_real phi_min,
+                          sh_real phi_max)
 {
-    return is_knee(column) || column->place <= SH_LOOKS_LIKE_SPRING * (phi_max - phi_min);
+    return is_knee(column) ||
+           column->place <= SH_LOOKS_LIKE_SPRING * (phi_max - phi_min) / p->range.phi;
 }
 
 /* ---- which columns there are ------------------------------------------------------------- */
@@ -167,7 +169,7 @@ static void add(column_list *list, const sh_parameters *p, int kind, int i, int 
         list->column[list->size].j = column.j;
         list->column[list->size].prior = column.prior;
         list->column[list->size].unit = column.unit;
-        list->column[list->size].place = width_or_place(&column, p) * p->range.phi;
+        list->column[list->size].place = width_or_place(&column, p);
     }
     list->size += 1;
 }
@@ -256,12 +258,12 @@ void sh_columns_start(sh_columns *columns, const sh_parameters *p)
 
 /* ---- the signals of a sample ------------------------------------------------------------- */
 
-/* max(phi - k, 0) for a knee k >= 0, min(phi - k, 0) for k < 0; if the torque is symmetric, both [rad]. */
-static sh_real beyond_knee(sh_real phi, sh_real k, int symmetric)
+/* max(x - k, 0) for a knee k >= 0, min(x - k, 0) for k < 0; if the torque is symmetric, both. */
+static sh_real beyond_knee(sh_real x, sh_real k, int symmetric)
 {
-    const int is_left = symmetric ? phi < 0 : k < 0;
+    const int is_left = symmetric ? x < 0 : k < 0;
 
-    return is_left ? sh_fmin(phi + sh_fabs(k), 0) : sh_fmax(phi - k, 0);
+    return is_left ? sh_fmin(x + sh_fabs(k), 0) : sh_fmax(x - k, 0);
 }
 
 /* Whether the column is the widest dead zone: it may be a knee, and then has a slope. */
@@ -275,6 +277,7 @@ static sh_real signal_of(const sh_column *column, const sh_parameters *p, const 
                          sh_real *slope)
 {
     const int i = column->i, j = column->j;
+    const sh_real h = column->place;
     sh_real beyond;
 
     switch (column->kind) {
@@ -294,16 +297,16 @@ static sh_real signal_of(const sh_column *column, const sh_parameters *p, const 
         return sh_sin(at->q);
     case SH_COLUMN_COS_Q:
         return sh_cos(at->q);
-    case SH_COLUMN_DEAD_ZONE: /* sh_limited(phi, h) / h */
-        if (may_be_knee(column) && sh_fabs(at->phi) < column->place) {
-            *slope = 1 / column->place;
+    case SH_COLUMN_DEAD_ZONE: /* sh_limited(x, h) / h */
+        if (may_be_knee(column) && sh_fabs(at->phi) < h * p->range.phi) {
+            *slope = 1 / (h * p->range.phi);
         }
-        return sh_limited(at->phi, column->place) / column->place;
+        return sh_limited(at->phi / p->range.phi, h) / h;
     case SH_COLUMN_HYSTERESIS: /* z / h, the element is z <- sh_limited(z + dphi, h) */
-        return at->stop[i % SH_WIDTHS] / column->place;
+        return at->stop[i % SH_WIDTHS] / (h * p->range.phi);
     case SH_COLUMN_KNEE:
     case SH_COLUMN_POSSIBLE_KNEE:
-        beyond = beyond_knee(at->phi, column->place, p->rls.symmetric) / p->range.phi;
+        beyond = beyond_knee(at->phi / p->range.phi, h, p->rls.symmetric);
         *slope = sh_fabs(beyond) > 0 ? 1 / p->range.phi : 0;
         return beyond;
     case SH_COLUMN_SIN_M:
@@ -377,22 +380,24 @@ void sh_joint_point_at(sh_joint_point *point, const sh_columns *columns, const s
     }
 }
 
-/* 1 if phi may be on the other side of the place where the slope of a knee changes, or of a dead zone that may be
+/* 1 if x may be on the other side of the place where the slope of a knee changes, or of a dead zone that may be
  * one: that place is known to 2 % of the range, or to a factor of 2.
  */
-static int is_beside(const sh_column *column, const sh_parameters *p, sh_real phi)
+static int is_beside(const sh_column *column, const sh_parameters *p, sh_real x)
 {
-    const sh_real place = column->place, error = SH_PLACE_OF_KNEE * p->range.phi;
+    const sh_real place = column->place;
 
     if (may_be_knee(column)) {
-        return sh_fabs(phi) > place / 2 && sh_fabs(phi) < 2 * place;
+        return sh_fabs(x) > place / 2 && sh_fabs(x) < 2 * place;
     }
-    return sh_fabs(phi - place) < error || (p->rls.symmetric && sh_fabs(phi + place) < error);
+    return sh_fabs(x - place) < SH_PLACE_OF_KNEE ||
+           (p->rls.symmetric && sh_fabs(x + place) < SH_PLACE_OF_KNEE);
 }
 
 sh_real sh_columns_judge_knees(const sh_columns *columns, const sh_parameters *p,
                                const sh_real *beta, sh_joint_point *at)
 {
+    const sh_real x = at->phi / p->range.phi;
     const sh_real slope = at->sigma_nominal + sh_sum_of_products(at->dF, beta, columns->spring);
     sh_real variance = 0;
     int i;
@@ -400,12 +405,16 @@ sh_real sh_columns_judge_knees(const sh_columns *columns, const sh_parameters *p
     for (i = 0; i < columns->spring; ++i) {
         const sh_column *column = &columns->column[i];
         const sh_real outside = slope - at->dF[i] * beta[i]; /* of a dead zone */
-        const sh_real unit = may_be_knee(column) ? column->place : p->range.phi;
-        const sh_real jump = beta[i] * column->prior / unit;
+        sh_real jump = beta[i] * column->prior / p->range.phi;
 
+        if (may_be_knee(column)) {
+            jump /= column->place;
+        } else if (!is_knee(column)) {
+            continue;
+        }
         if (may_be_knee(column) && outside + jump < SH_GAP * outside) {
             at->dF[i] = 0;
-        } else if ((may_be_knee(column) || is_knee(column)) && is_beside(column, p, at->phi)) {
+        } else if (is_beside(column, p, x)) {
             variance += sh_square(jump / 2);
         }
     }

@@ -6,9 +6,9 @@
 #include "constants.h"
 #include "regression.h"
 
-static int is_distinct(const sh_regression_state *state, int i)
+static int is_distinct(const sh_regression_state *state, const sh_parameters *p, int i)
 {
-    return sh_column_is_distinct(&state->columns.column[i], state->history.phi_min,
+    return sh_column_is_distinct(&state->columns.column[i], p, state->history.phi_min,
                                  state->history.phi_max);
 }
 
@@ -16,13 +16,14 @@ static int is_distinct(const sh_regression_state *state, int i)
  * need few rows of U. Behind them stand those of the motor, whose information is changed or whose variance is
  * used, and at the end the group that is tried.
  */
-static int place_of(const sh_regression_state *state, int i)
+static int place_of(const sh_regression_state *state, const sh_parameters *p, int i)
 {
     const sh_column *column = &state->columns.column[i];
     const sh_refit *refit = &state->refit;
     const int group = sh_column_kinds[column->kind].group;
 
-    if (group != 0 && (!is_distinct(state, i) || (group != refit->trial && !refit->used[group]))) {
+    if (group != 0 &&
+        (!is_distinct(state, p, i) || (group != refit->trial && !refit->used[group]))) {
         return -1;
     }
     return group != 0 && group == refit->trial                                    ? 3
@@ -32,13 +33,13 @@ static int place_of(const sh_regression_state *state, int i)
 }
 
 /* Chooses columns [size: SH_MAX_COLUMNS] for the refit. Returns their number. */
-static int choose_columns(const sh_regression_state *state, int *chosen)
+static int choose_columns(const sh_regression_state *state, const sh_parameters *p, int *chosen)
 {
     int places[SH_MAX_COLUMNS] = {0}, size = 0, place, i;
 
     /*@ loop unroll SH_MAX_COLUMNS; */
     for (i = 0; i < state->columns.size; ++i) {
-        places[i] = place_of(state, i);
+        places[i] = place_of(state, p, i);
     }
     /*@ loop unroll 4; */
     for (place = 0; place < 4; ++place) {
@@ -53,12 +54,12 @@ static int choose_columns(const sh_regression_state *state, int *chosen)
 }
 
 /* The weight of the data is 1 / kappa^2. In a trial it is 1 / max(1, q). */
-static void start_refit(sh_regression_state *state)
+static void start_refit(sh_regression_state *state, const sh_parameters *p)
 {
     sh_refit *refit = &state->refit;
     const sh_real weight =
         1 / (refit->trial == 0 ? state->variance_factor : sh_fmax(1, state->misfit));
-    const int size = choose_columns(state, refit->posterior.column);
+    const int size = choose_columns(state, p, refit->posterior.column);
 
     sh_information_start(&refit->posterior.information, size, 1);
     refit->posterior.weight = weight;
@@ -73,12 +74,12 @@ void sh_refit_start(sh_regression_state *state, const sh_parameters *p)
 {
     state->variance_factor = state->misfit = 1;
     state->friction_std = p->prior.D_theta;
-    start_refit(state);
+    start_refit(state, p);
     state->posterior = state->refit.posterior;
 }
 
 /* The next group that can be tried, 0 if there is none. */
-static int next_trial(sh_regression_state *state)
+static int next_trial(sh_regression_state *state, const sh_parameters *p)
 {
     sh_refit *refit = &state->refit;
     int tries, i;
@@ -87,7 +88,7 @@ static int next_trial(sh_regression_state *state)
         refit->last_trial = refit->last_trial % (SH_GROUPS - 1) + 1;
         for (i = 0; i < state->columns.size; ++i) {
             if (sh_column_kinds[state->columns.column[i].kind].group == refit->last_trial &&
-                is_distinct(state, i)) {
+                is_distinct(state, p, i)) {
                 return refit->last_trial;
             }
         }
@@ -177,12 +178,12 @@ static void judge_friction(sh_regression_state *state, const sh_parameters *p)
 }
 
 /* The next refit is a trial after every one that changed the estimate. */
-static void plan_refit(sh_regression_state *state)
+static void plan_refit(sh_regression_state *state, const sh_parameters *p)
 {
     sh_refit *refit = &state->refit;
     const int is_due = refit->trial == 0 && state->blocks.count >= SH_FIRST_BLOCKS;
 
-    refit->trial = is_due ? next_trial(state) : 0;
+    refit->trial = is_due ? next_trial(state, p) : 0;
 }
 
 static void take_row(sh_regression_state *state)
@@ -194,10 +195,10 @@ static void take_row(sh_regression_state *state)
     (void)sh_posterior_take(&refit->posterior, x, state->columns.size, w);
 }
 
-void sh_refit_restart(sh_regression_state *state)
+void sh_refit_restart(sh_regression_state *state, const sh_parameters *p)
 {
     state->refit.trial = 0;
-    start_refit(state);
+    start_refit(state, p);
 }
 
 void sh_refit_take(sh_regression_state *state)
@@ -222,7 +223,7 @@ void sh_refit_advance(sh_regression_state *state, const sh_parameters *p)
 
     if (refit->row >= rows + SH_REFIT_STEPS) {
         if (refit->pause >= SH_REFIT_PAUSE * state->blocks.count * SH_BLOCK) {
-            start_refit(state);
+            start_refit(state, p);
         }
         return;
     }
@@ -233,7 +234,7 @@ void sh_refit_advance(sh_regression_state *state, const sh_parameters *p)
     } else if (step == 1) {
         sh_misfit_judge(state, p);
         judge_friction(state, p);
-        plan_refit(state);
+        plan_refit(state, p);
     } else if (step < SH_REFIT_STEPS - 1) {
         if (refit->trial == 0) {
             sh_friction_drift(state, refit->time, step - 2);

@@ -108,7 +108,8 @@ int sh_columns_count(const sh_parameters *p);
 void sh_columns_start(sh_columns *columns, const sh_parameters *p);
 
 /* Whether the column can be told from the spring after deformations of phi_min..phi_max [rad]. */
-int sh_column_is_distinct(const sh_column *column, sh_real phi_min, sh_real phi_max);
+int sh_column_is_distinct(const sh_column *column, const sh_parameters *p, sh_real phi_min,
+                          sh_real phi_max);
 
 /* Sets the point of positions [rad], set-point [1] and hysteresis [size: SH_WIDTHS], which is kept. */
 void sh_joint_point_at(sh_joint_point *point, const sh_columns *columns, const sh_parameters *p,
@@ -274,7 +275,7 @@ int sh_change_is_likely(const sh_regression_state *state);
 void sh_refit_start(sh_regression_state *state, const sh_parameters *p);
 
 /* Starts the refit again, not as a trial: the data contain a change of the spring. */
-void sh_refit_restart(sh_regression_state *state);
+void sh_refit_restart(sh_regression_state *state, const sh_parameters *p);
 
 /* Takes the last row, if a refit is under way. */
 void sh_refit_take(sh_regression_state *state);
