@@ -208,8 +208,9 @@ def gears(configuration: Configuration, every: Mapping[str, Value]) -> Iterator[
         if name == "tau":
             keys.reverse()
         (key, expected), other = keys
-        what = (key, other[1], "", expected, expected, [other], name)
-        yield Finding(Kind.GEAR, Severity.WRONG, *what)
+        yield Finding(
+            Kind.GEAR, Severity.WRONG, key, other[1], "", expected, expected, [other], name
+        )
 
 
 def rests_on(
