@@ -98,7 +98,7 @@
 /* ---- change of the spring, change.c ------------------------------------------------------ */
 
 /* Evidence above which the estimate is in doubt, and, times the root of its usual error, the spring has
- * changed [1]. Without a change, it stayed below 69 in 772 runs of 20 to 60 s with every misfit.
+ * changed [1]. Without a change, it stayed below 56 in 1930 runs of 20 to 60 s with every misfit.
  */
 #define SH_MAY_HAVE_CHANGED ((sh_real)20)
 #define SH_HAS_CHANGED ((sh_real)100)

@@ -122,8 +122,7 @@ typedef struct {
                       set-point; dead zone and hysteresis: half width i; else 0 */
     sh_real prior; /* std deviation of its coefficient, by which the column is multiplied */
     sh_real unit;  /* power of the torque: its coefficient times this is that of sh_estimate */
-    sh_real
-        place; /* over range.phi [1]: half width of a dead zone or hysteresis, place of a knee */
+    sh_real place; /* half width of dead zone or hysteresis, or place of a knee, over range.phi */
 } sh_column;
 
 /* All columns. */
