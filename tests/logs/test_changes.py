@@ -10,6 +10,7 @@ from browser import opened
 from command_line import Shell
 from recorded_logs import REGRESSION, read_estimate, write_log
 from regression_joint import Joint
+from sigmahat.logs.curve import since_change
 from sigmahat.logs.job import Changes
 
 MARKS = """
@@ -56,3 +57,21 @@ def test_the_size_needs_a_confident_estimate_before_and_after() -> None:
     assert first.in_words == "the stiffness changed by +111 % at 2 s"
     assert second.t == 3.5 and second.relative is None
     assert second.in_words == "the stiffness changed at 3.5 s, by how much is not known"
+
+
+def test_deformations_of_before_the_last_change_are_not_in_the_data() -> None:
+    outputs = {
+        "change_age": np.array([-1.0, -1.0, 0.0, 0.5, 0.0, 0.5]),
+        "phi": np.arange(6.0),
+        "valid": np.ones(6, dtype=bool),
+        "a": np.array([1.0, 1.0, 1.0, 1.0, 0.0, 1.0]),
+    }
+    assert list(since_change(outputs)["phi"]) == [4.0, 5.0]
+    # WHEN no sample was used since the change, nothing else is known
+    outputs["a"][5] = 0.0
+    assert list(since_change(outputs)["phi"]) == list(range(6))
+    outputs["change_age"][:] = -1.0
+    assert list(since_change(outputs)["phi"]) == list(range(6))
+    # WHEN the change was in a log before this one, every sample is behind it
+    outputs["change_age"][:] = np.arange(7.0, 13.0)
+    assert list(since_change(outputs)["phi"]) == list(range(6))

@@ -18,10 +18,25 @@ from sigmahat.joint.stored import LearnedLog, Range
 from sigmahat.logs.configuration import PORTS
 from sigmahat.logs.log import Array
 
-NEEDED = ("phi", "setPoint", "tau_e", "tau_e_residual", "epsilon", "a", "valid", "confident")
+NEEDED = (
+    *("phi", "setPoint", "tau_e", "tau_e_residual", "epsilon", "a", "valid", "confident"),
+    "change_age",
+)
 """Outputs of the estimator from which points are computed."""
 _GOLDEN = 0.6180339887498949
 _POINTS = 3000  # approximate number of points that are shown
+
+
+def since_change(outputs: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
+    """The outputs from the last change of the stiffness on: what was before shows another curve.
+
+    All of them without a change, and if the regression has used nothing since.
+    """
+    age, used = outputs["change_age"], outputs["valid"].astype(bool) & (outputs["a"] > 0)
+    before = np.concatenate([[-1.0], age[:-1]])
+    begins = np.flatnonzero((age >= 0) & ((age < before) | (before < 0)))
+    first = int(begins[-1]) if len(begins) and used[begins[-1] :].any() else 0
+    return {name: values[first:] for name, values in outputs.items()}
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from sigmahat.fmi.instance import Slave, Value
 from sigmahat.joint.sheet import powers_of_phi
 from sigmahat.joint.stored import LearnedLog, Range
 from sigmahat.logs.configuration import Configuration
-from sigmahat.logs.curve import NEEDED, Answer, curve, points_of, shown_points, spread
+from sigmahat.logs.curve import NEEDED, Answer, curve, points_of, shown_points, since_change, spread
 from sigmahat.logs.learned import Learned, go_on
 from sigmahat.logs.log import Array, Log
 from sigmahat.logs.replay import OUTPUTS, parameters, play
@@ -236,6 +236,6 @@ class Replay:
     def answer(self) -> Answer:
         """The curve and its measured points, at the end."""
         parts = self.statistics.points.items()
-        outputs = {name: np.concatenate(of_chunks) for name, of_chunks in parts}
+        outputs = since_change({name: np.concatenate(of_chunks) for name, of_chunks in parts})
         found = curve(self.slave, self.every, self.logs, points_of(outputs, self.method))
         return Answer(found, shown_points(outputs, self.method), self.statistics.last_doubt)
