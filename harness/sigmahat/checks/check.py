@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -83,7 +83,9 @@ def check_identified(log: Log, before: Configuration, after: Configuration) -> C
     is_given = "motor.B" in before.parameters and float(_every(before)["prior.B"]) < WIDE
     if before == after or not is_given:
         return checked
-    of_inertia = [each for each in _contradictions(_view(log, before)) if each.kind in _INERTIA]
+    spoiled = any(each.kind in (Kind.AT_REST, Kind.JUMP, Kind.SPIKE) for each in checked.findings)
+    found = [] if spoiled else _of_motion(_view(log, before), [])  # its columns were checked above
+    of_inertia = [each for each in found if each.kind in _INERTIA]
     others = [each for each in checked.findings if each.kind not in _INERTIA]
     return replace(checked, findings=[*of_inertia, *others])
 
@@ -181,6 +183,11 @@ def _contradictions(seen: View) -> Iterator[Finding]:
     if any(each.kind in (Kind.JUMP, Kind.SPIKE) for each in recorded):
         yield from recorded
         return
+    yield from _of_motion(seen, recorded)
+
+
+def _of_motion(seen: View, recorded: Sequence[Finding]) -> Iterator[Finding]:
+    """What the motion contradicts, and the findings of the columns that do not follow from it."""
     here = relation(seen)
     yield from here.findings
     keys = {each.key for each in here.findings}
