@@ -255,6 +255,7 @@ def test_a_torque_that_is_only_noise_is_noted() -> None:
     for hold, noted in ((0.0, True), (0.05, False)):
         found = checked(log_by_hand(hold), RIGHT)
         assert (Kind.NO_TORQUE in [each.kind for each in found.findings]) is noted
+        assert not any(each.about == "NegativeStiffness" for each in found.findings)
 
 
 def test_the_command(shell: Shell) -> None:

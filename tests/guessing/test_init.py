@@ -181,6 +181,14 @@ def test_a_time_in_another_unit_is_doubted(
         assert "implausible" in Path("log.toml").read_text()
 
 
+@pytest.mark.parametrize(("name", "column"), [("time", "time"), ("column 1", None)])
+def test_rows_that_are_written_twice_do_not_hide_the_times(name: str, column: str | None) -> None:
+    rows = np.sort(np.append(np.arange(len(T)), np.arange(0, len(T), 20)))
+    log = {name: T[rows], **{each: LOG[each][rows] for each in ("theta", "q", "tau")}}
+    found = guess(read_columns(LogInMemory(Path("log"), log)))
+    assert (found.time and found.time.column) == column
+
+
 def test_the_configuration_of_many_columns_can_be_read_again(tmp_path: Path) -> None:
     many = {
         f"a_column_with_a_long_name_that_does_not_move[{i}]": np.ones(1000) for i in range(1500)

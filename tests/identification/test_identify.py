@@ -11,7 +11,7 @@ import pytest
 import tomlkit
 
 import sigmahat
-from checked_logs import RIGHT, log_by_hand
+from checked_logs import RIGHT, knee_log, log_by_hand
 from command_line import Shell
 from recorded_logs import (
     CONFIGURATION,
@@ -297,6 +297,17 @@ def test_a_value_instead_of_one_that_is_not_known_stays(found: Found, path: Path
     write(cannot_tell(found[1.0]), path)
     read = read_configuration(path).parameters
     assert (read["motor.B"], read["prior.B"]) == (1.2e-4, 0.1)
+
+
+def test_a_torque_of_another_scale_does_not_replace_a_known_inertia() -> None:
+    """GIVEN a torque that is 100 times too small, and motor.B known to 10 %."""
+    log, wrong = dict(knee_log()), RIGHT.replace("torque_constant", "gear_ratio = 100\ntorque_constant")
+    found = identified(log, wrong)
+    assert not found.quantities["B"].determined
+    assert any("where motor.B is 0.000105, known to 10 %: it is not written" in n for n in found.notes)
+    # WHEN nobody says how well it is known, or the torque is right, it is written
+    for text in (wrong.replace("prior.B = 0.1", "prior.B = 1000"), RIGHT):
+        assert identified(log, text).quantities["B"].determined
 
 
 def free_load(frequencies: Sequence[float]) -> Columns:

@@ -10,6 +10,7 @@ from sigmahat.logs.log import Array, Log, LogError, check_together
 from sigmahat.logs.units import seconds, unwrap
 
 _MOSTLY = 0.99  # least fraction of the steps of a clock that increase
+_NAMED = 0.8  # the same where its name says that it has times: a logger may write rows twice
 _EVEN = 0.05  # largest relative difference of a step from the usual step
 _MISSING = 1.8  # in usual steps: in a longer step, rows are lost
 _GAP = 3.0  # in usual steps: a longer step is a gap
@@ -121,7 +122,8 @@ def _wrap(steps: Array, span: float) -> float | None:
 
 def is_clock(meaning: Meaning, facts: Facts, values: Array) -> bool:
     """Whether a column contains times, by its name, or because the values increase evenly."""
-    if facts.text or not facts.varies or facts.increasing < _MOSTLY or facts.wrap is not None:
+    least = _NAMED if meaning.quantity == "time" else _MOSTLY
+    if facts.text or not facts.varies or facts.increasing < least or facts.wrap is not None:
         return False
     if meaning.quantity is not None:
         return meaning.quantity == "time"

@@ -46,6 +46,11 @@ _CHANGES = (
     "the stiffness changes after {t:.4g} s of the log: identified with one spring before, and "
     "another one after it"
 )
+_CONTRADICTED = (
+    "the log shows B = {found:.3g} kg.m2 where motor.B is {given:.3g}, known to {std:.3g} %: it "
+    "is not written, as the torque may have another scale than the configuration says; check "
+    "torque_constant, unit and gear_ratio of tau, and motor.gamma, or remove motor.B"
+)
 _HIDDEN = (
     "the deformation differs from the acceleration of the motor by less than the rounding of the "
     "encoders: the log cannot tell the inertia of the motor from the inertia of the load; record "
@@ -109,6 +114,9 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
     motor = fit_motor(springs, h, gamma, symmetric, f_0, inertia)
     quantities = dict(motor.quantities)
     notes = [*samples.notes, *([] if change is None else [_CHANGES.format(t=change * h)])]
+    if inertia is not None and motor.contradicted:
+        found, given = quantities["B"].value, inertia.value
+        notes.append(_CONTRADICTED.format(found=found, given=given, std=100 * inertia.std))
     no_torque = all(is_only_noise(piece.tau) for piece in pieces)
     if no_torque or hidden:
         quantities = {name: _not_shown(each) for name, each in quantities.items()}

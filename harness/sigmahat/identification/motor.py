@@ -36,6 +36,8 @@ _SAMPLING = {"B": 0.015, "tau_coulomb": 0.015, "D_theta": 0.001}
 _OF_COVERED = 0.05  # largest half width of a known zero, over the covered deformation
 _STRIBECK = (0.03, 0.1, 0.3)  # [rad/s] over which the friction of slow motion decreases
 _ENDS = (0.0, -1.96, 1.96)  # value and ends of a known inertia, in standard deviations
+_FAR = 5.0  # standard deviations of a known B that no error of a data sheet exceeds
+_ANOTHER = 0.5  # relative error of B below which another scale of the torque is not likely
 _N, _M = 4, 4  # highest orders of the polynomial that are tried
 
 
@@ -46,6 +48,13 @@ class KnownInertia:
     value: float  # [kg.m2]
     std: float  # standard deviation of its relative error, > 0
 
+    def contradicts(self, found: Quantity) -> bool:
+        """Whether a B is so far off that the torque may have another scale than the configuration
+        says: a wrong torque constant or gear ratio changes B and the stiffness by the same factor.
+        """
+        most = self.value * max(_FAR * self.std, _ANOTHER)
+        return abs(found.value - self.value) - found.half_width > most
+
 
 @dataclass(frozen=True)
 class MotorFit:
@@ -54,6 +63,9 @@ class MotorFit:
     quantities: dict[str, Quantity]
     """B, D_theta and tau_coulomb, and the zero of the deformation where there is one."""
     gain: tuple[float, float]  # of a measured torque: value, and half of the 95 % interval
+    contradicted: bool
+    """Whether the B of the log contradicts what is known of it: then it counts as not determined,
+    and the other quantities are identified with the known B."""
     polynomial: Form  # orders and symmetry of the polynomial for the estimator
     spring: float  # largest torque of the spring in the log [N.m]
 
@@ -87,6 +99,9 @@ def fit_motor(
     torque = float(np.std(np.concatenate([piece.tau for piece in pieces])))
     fits, with_inertia = _variants(pieces, T, gamma, form, inertia)
     quantities = {name: _motor_quantity(name, fits, torque) for name in MOTOR}
+    contradicted = inertia is not None and inertia.contradicts(quantities["B"])
+    if contradicted:
+        quantities["B"] = replace(quantities["B"], determined=False)
     if with_inertia is not None and not quantities["B"].determined:
         fits = with_inertia
         quantities |= {name: _motor_quantity(name, fits, torque) for name in MOTOR[1:]}
@@ -94,7 +109,8 @@ def fit_motor(
     if "gain" not in fits.first.value:
         quantities["zero"] = _zero(spring, fits, pieces, gamma)
     gain = fits.first.value.get("gain", math.nan), _half_width("gain", fits)
-    return MotorFit(quantities, gain, polynomial, spring.largest(fits.first, pieces, abs(gamma)))
+    largest = spring.largest(fits.first, pieces, abs(gamma))
+    return MotorFit(quantities, gain, contradicted, polynomial, largest)
 
 
 def _with_spring(

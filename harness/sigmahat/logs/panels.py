@@ -277,10 +277,15 @@ def curve_panels(curve: joint.Curve, points: MeasuredPoints) -> Iterator[Panel]:
 
 
 def _scale(curves: list[Curve]) -> tuple[float, float] | None:
-    """Range of the axis: the range of the data, without single points that are far off."""
+    """Range of the axis: the range of the data, without single points that are far off.
+
+    Of a band that is wide, as much is shown as the curve is large: else the curve is a line at 0.
+    """
     shown = []
     for each in curves:
-        shown += [values[each.within] for values in (each.y, *(each.band or ()))]
+        y = each.y[each.within]
+        room = np.max(np.abs(y), initial=0.0)
+        shown += [y, *(np.clip(b[each.within], y - room, y + room) for b in each.band or ())]
         if each.behind is not None and len(each.behind[1]):
             shown.append(np.array(limits(each.behind[1])))
     return around(shown, 0.1)

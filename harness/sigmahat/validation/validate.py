@@ -193,7 +193,7 @@ class Validation:
                 f"the learned curve does not predict the torque, its error is "
                 f"{100 * error.relative:.3g} % of the standard deviation: check the sign, "
                 "zero, counts_per_turn, torque_constant and gear_ratio of the ports, motor.gamma "
-                "and prior.torque_gain"
+                "and prior.torque_gain; or the joint has changed"
             )
         return None
 
