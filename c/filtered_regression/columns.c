@@ -127,7 +127,7 @@ int sh_power_of_phi(int symmetric, int i)
     return symmetric ? 2 * i + 1 : i;
 }
 
-/* What the coefficient of l^j x^e / e is multiplied by to get that of setPoint^j phi^e. */
+/* What the coefficient of l^j x^e / e is multiplied by to get that of (setPoint - center)^j phi^e. */
 static sh_real unit_of_power(const sh_parameters *p, int i, int j)
 {
     const int e = sh_power_of_phi(p->rls.symmetric, i);
@@ -322,7 +322,8 @@ static sh_real signal_of(const sh_column *column, const sh_parameters *p, const 
 static void set_powers(sh_joint_point *point, const sh_parameters *p, sh_real set_point)
 {
     const int symmetric = p->rls.symmetric;
-    const sh_real x = point->phi / p->range.phi, l = set_point / p->range.setPoint;
+    const sh_real x = point->phi / p->range.phi;
+    const sh_real l = (set_point - p->range.setPoint_center) / p->range.setPoint;
     const sh_real step = symmetric ? x * x : x;
     sh_real power = symmetric ? x : 1, slope = symmetric ? 1 / p->range.phi : 0;
     int i, j;

@@ -81,19 +81,36 @@ static void evaluate_filtered_regression(const sh_estimator *estimator, const sh
 
 /* ---- report ------------------------------------------------------------------------------- */
 
+/* Adds the coefficient of (s - c)^j phi^e, of set-point s, to those of s^k phi^e:
+ *
+ *     (s - c)^j = sum over k of binomial(j, k) (-c)^(j - k) s^k .
+ */
+static void add_power(const sh_column *column, sh_real coefficient, sh_real center,
+                      sh_estimate *estimate)
+{
+    const int i = column->i, j = column->j;
+    sh_real term = coefficient;
+    int k;
+
+    for (k = j; k >= 0; --k) {
+        estimate->eta[i][k] = sh_limited(estimate->eta[i][k] + term, SH_LARGEST_OUTPUT);
+        term *= -center * (sh_real)k / (sh_real)(j - k + 1);
+    }
+}
+
 /* Sets the coefficients eta, and adds up those of each kind of column, sum [size: SH_COLUMN_KINDS]. */
 static void read_coefficients(const sh_regression_state *state, const sh_parameters *p,
                               const sh_joint_point *at, sh_real *sum, sh_estimate *estimate)
 {
     int i, j;
 
+    (void)memset(estimate->eta, 0, sizeof estimate->eta);
     for (i = 0; i < state->columns.size; ++i) {
         const sh_column *column = &state->columns.column[i];
         sh_real value = column->prior * state->beta[i];
 
         if (sh_column_is(column, SH_IS_POWER)) {
-            estimate->eta[column->i][column->j] =
-                sh_limited(value * column->unit, SH_LARGEST_OUTPUT);
+            add_power(column, value * column->unit, p->range.setPoint_center, estimate);
         } else if (column->kind == SH_COLUMN_DAMPING) {
             value *= sh_limited(at->l[column->j], SH_LARGE);
         }
@@ -101,8 +118,7 @@ static void read_coefficients(const sh_regression_state *state, const sh_paramet
     }
     for (i = 0; i < p->rls.n && state->columns.has_nominal; ++i) {
         for (j = 0; j < p->rls.m; ++j) {
-            estimate->eta[i][j] = (p->prior.tau_e > 0 ? estimate->eta[i][j] : 0) +
-                                  (1 + sum[SH_COLUMN_NOMINAL]) * p->rls.eta_0[i][j];
+            estimate->eta[i][j] += (1 + sum[SH_COLUMN_NOMINAL]) * p->rls.eta_0[i][j];
         }
     }
 }

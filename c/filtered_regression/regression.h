@@ -16,7 +16,7 @@ typedef struct {
     sh_real theta, q, phi;      /* positions and deformation [rad] */
     sh_real power[SH_MAX_N];    /* x^e / e, x = phi / range.phi, e of number i [1] */
     sh_real slope[SH_MAX_N];    /* and its derivative by phi [1/rad] */
-    sh_real l[SH_MAX_M];        /* (set-point / range.setPoint)^j [1] */
+    sh_real l[SH_MAX_M];        /* ((set-point - its center) / range.setPoint)^j [1] */
     sh_real tau_nominal;        /* torque of the curve rls.eta_0 [N.m] */
     sh_real sigma_nominal;      /* and its stiffness [N.m/rad] */
     const sh_real *stop;        /* [size: SH_WIDTHS] stop operators of hysteresis [rad] */

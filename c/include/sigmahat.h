@@ -144,7 +144,8 @@ typedef struct {
 /* Ranges of the operating point. */
 typedef struct {
     sh_real phi;      /* largest deformation to be expected [rad], 1e-6..1e6 */
-    sh_real setPoint; /* largest set-point to be expected [1], 1e-12..1e12 */
+    sh_real setPoint; /* largest distance of the set-point from its center [1], 1e-12..1e12 */
+    sh_real setPoint_center; /* middle of the set-points to be expected [1], -1e12..1e12 */
     /* Deformations over phi at which the slope of the curve changes at once, on both sides [1], 0..1: */
     sh_real knee;   /* 0: not known, and used if the data ask for it */
     sh_real knee_2; /* a second one; 0: there is none */

@@ -73,6 +73,10 @@ CASES: Mapping[str, tuple[Joint, Mapping[str, float]]] = {
     "one column": (replace(SHORT, tau_coulomb=0.0), {**ONE, **NO_MOTOR, "regression.drift": 1e-2}),
     "sensor": (SHORT, {**ONE, "modality": SENSOR}),
     "general basis": (SHORT, GENERAL),
+    "set-points around their center": (
+        SHORT,
+        {"rls.n": 2, "rls.m": 3, "range.setPoint": 20.0, "range.setPoint_center": 65.0},
+    ),
     "two knees": (SHORT, {**GENERAL, **TWO_KNEES}),
     "symmetric knees": (SHORT, {"rls.m": 1, **TWO_KNEES}),
     "one power less than the most": (SHORT, {"rls.n": 7, "rls.m": 1}),

@@ -38,7 +38,7 @@ LEAST = 1e-9
 START: Parameters = {  # start values, with rls.n for the AwAS and an unknown inertia
     **DEFAULTS,
     **{"method": 2, "torque.held": 0, "rls.n": 3, "range.phi": 0.3, "range.setPoint": 100.0},
-    **{"range.knee": 0.0, "range.knee_2": 0.0},
+    **{"range.knee": 0.0, "range.knee_2": 0.0, "range.setPoint_center": 0.0},
     **{"regression.bandwidth": 350.0, "regression.slow": 0.05, "regression.drift": 0.0},
     **{"regression.memory": 20.0, "prior.tau_e": 45.0, "prior.nominal": 0.0, "prior.D_theta": 0.2},
     **{"prior.B": 0.1, "prior.tau_coulomb": 0.02, "prior.torque_gain": 0.02, "prior.bias": 0.05},
@@ -740,5 +740,6 @@ class Oracle:
                 number, j = places[kind]
                 e = self.inputs.exponent(number)
                 unit = self.p["range.phi"] ** e * self.p["range.setPoint"] ** j * max(e, 1)
-                eta[number, j] += float(self.beta[i]) * prior / unit
+                power = np.poly1d([1.0, -self.p["range.setPoint_center"]]) ** j
+                eta[number, : j + 1] += float(self.beta[i]) * prior / unit * power.c[::-1]
         return eta

@@ -143,7 +143,7 @@ class Inputs:
         self.p, self.theta, self.q, self.phi = p, theta, q, q - theta
         self.x = self.phi / p["range.phi"]
         self.set_point = 100 - 2.5 / (2 * math.pi) * theta_c
-        self.l = self.set_point / p["range.setPoint"]
+        self.l = (self.set_point - p["range.setPoint_center"]) / p["range.setPoint"]
         self.plays = plays(self.phi, runs, p["range.phi"])
         self.columns = columns(p, eta_0 is not None)
         zero = np.zeros(len(z))

@@ -302,6 +302,8 @@ def _set_point(port: PortGuess | None) -> Iterator[tuple[str, float, str]]:
     """Parameters of the set-point, whose values should be about 1 to 100."""
     if port is None:
         yield "rls.m", 1, "no set-point"
+        yield "setPoint.offset", 0, "with a port theta_c: set-point = offset + scale theta_c"
+        yield "setPoint.scale", 1, ""
         return
     in_port = 2 * math.pi / TURN[port.unit] if port.unit in TURN else 1.0
     largest = in_port * max(abs(port.low - port.zero), abs(port.high - port.zero))

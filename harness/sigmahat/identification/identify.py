@@ -7,7 +7,7 @@ sensor, the noise of the signals, a bandwidth and V_a for the filters, and the p
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -113,20 +113,23 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
     springs = thinned if change is None else with_two_springs(thinned, change)
     motor = fit_motor(springs, h, gamma, symmetric, f_0, inertia)
     quantities = dict(motor.quantities)
-    notes = [*samples.notes, *([] if change is None else [_CHANGES.format(t=change * h)])]
-    if inertia is not None and motor.contradicted:
-        found, given = quantities["B"].value, inertia.value
-        notes.append(_CONTRADICTED.format(found=found, given=given, std=100 * inertia.std))
     no_torque = all(is_only_noise(piece.tau) for piece in pieces)
+    notes = _notes(
+        changed=None if change is None else change * h,
+        B=quantities["B"],
+        wrong=inertia if motor.contradicted else None,
+        no_torque=no_torque,
+        hidden=hidden,
+    )
     if no_torque or hidden:
         quantities = {name: _not_shown(each) for name, each in quantities.items()}
-        notes.append(_NO_TORQUE if no_torque else _HIDDEN)
     if quantities["B"].determined:  # until here it was that of the configuration
         bandwidth = replace(noise, inertia=quantities["B"].value * abs(gamma)).bandwidth
     if torque_constant and (nominal := configuration.ports["tau"].torque_constant) is not None:
         quantities["torque_constant"] = motor.torque_constant(nominal)
     spring = motor.spring if math.isfinite(motor.spring) else 0.0
     center = _center(quantities.get("zero"), pieces)
+    middle, set_point = _set_points(pieces, has_effect=motor.polynomial.m > 1)
     return Identified(
         quantities=quantities,
         symmetric=motor.polynomial.symmetric,
@@ -142,14 +145,39 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
         knees=()
         if no_torque or hidden or change is not None
         else knees(thinned, h, gamma, motor.polynomial, center),
-        set_point=max(float(np.max(np.abs(piece.set_point))) for piece in pieces),
+        set_point=set_point,
+        set_point_center=middle,
         torque=0.0
         if no_torque
         else max(spring, *(abs(gamma) * float(np.max(np.abs(each.tau))) for each in pieces)),
         B=float(every["motor.B"]),
         D_theta=float(every["motor.D_theta"]),
-        notes=notes,
+        notes=[*samples.notes, *notes],
     )
+
+
+def _notes(
+    changed: float | None, B: Quantity, wrong: KnownInertia | None, no_torque: bool, hidden: bool
+) -> Iterator[str]:
+    """What a log does not show, or not as the configuration says.
+
+    changed  time of a change of the stiffness [s]
+    wrong    what is known of B, if B contradicts it
+    """
+    if changed is not None:
+        yield _CHANGES.format(t=changed)
+    if no_torque or hidden:
+        yield _NO_TORQUE if no_torque else _HIDDEN
+    elif wrong is not None:
+        yield _CONTRADICTED.format(found=B.value, given=wrong.value, std=100 * wrong.std)
+
+
+def _set_points(pieces: Sequence[Signals], has_effect: bool) -> tuple[float, float]:
+    """Center of the set-points, and the largest distance from it; 0 is the center if they have no
+    effect."""
+    ends = [float(end(piece.set_point)) for piece in pieces for end in (np.min, np.max)]
+    center = (min(ends) + max(ends)) / 2 if has_effect else 0.0
+    return center, max(abs(end - center) for end in ends)
 
 
 def _not_shown(quantity: Quantity) -> Quantity:

@@ -62,7 +62,8 @@ class Identified:
     """Deformation at which the spring has no torque [rad], where it is surely not 0; else 0."""
     knees: tuple[float, ...]
     """Up to two deformations at which the slope of the spring changes at once [rad]."""
-    set_point: float  #: Largest magnitude of the set-point [1].
+    set_point: float  #: Largest distance of the set-point from its center [1].
+    set_point_center: float  #: Middle of the set-points; 0 if the torque does not depend on it [1].
     torque: float
     """Largest magnitude of the torque of the motor after its gear, or of the spring [N.m]."""
     B: float  #: That of the configuration [kg.m2].
@@ -92,7 +93,8 @@ def as_dict(identified: Identified) -> dict[str, Any]:
         "zero of the deformation [rad]": identified.zero,
         "knees [rad]": list(identified.knees),
         "largest phi [rad]": identified.phi,
-        "largest setPoint [1]": identified.set_point,
+        "largest distance of setPoint from its center [1]": identified.set_point,
+        "center of setPoint [1]": identified.set_point_center,
         "largest gamma tau [N.m]": identified.torque,
         "notes": list(identified.notes),
     }
@@ -114,7 +116,8 @@ def summary(identified: Identified) -> str:
         f"filter          V_a = {identified.V_a:.2g} rad2/s4; "
         f"bandwidth {identified.bandwidth:.3g} rad/s",
         f"ranges          deformation {identified.phi:.3g} rad, "
-        f"set-point {identified.set_point:.3g}, gamma tau {identified.torque:.3g} N.m",
+        f"set-point {identified.set_point_center:.3g} +- {identified.set_point:.3g}, "
+        f"gamma tau {identified.torque:.3g} N.m",
         f"friction is     tau_coulomb tanh(theta_dot / ({COULOMB_VELOCITY:g} rad/s))",
     ]
     lines += [

@@ -70,6 +70,7 @@ def update(document: tomlkit.TOMLDocument, found: Identified, joint: str = "") -
         "regression.bandwidth": _ABOVE * found.bandwidth,
         "range.phi": _ROOM * found.phi,
         "range.setPoint": _ROOM * found.set_point,
+        "range.setPoint_center": found.set_point_center,
         "prior.tau_e": _ROOM * found.torque,
     }
     for name, knee in zip(_KNEES, found.knees, strict=False):

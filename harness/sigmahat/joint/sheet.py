@@ -181,6 +181,7 @@ def polynomial(
 
 
 _MOST_POWERS = 8  # largest rls.n of the FMU
+_MOST_COEFFICIENTS = 24  # with more, the FMU may have no column left for everything else
 _SAME = 1e-6  # relative difference of two stiffnesses by rounding
 
 
@@ -201,7 +202,8 @@ def with_knees(
     torque, beyond = tau_e - torque, sigma - stiffness
     if not np.any(np.abs(beyond) > _SAME * np.max(np.abs(sigma), initial=0.0)):
         return curve
-    powers = powers_of_phi(0 not in curve.powers_of_phi, _MOST_POWERS)
+    most = min(_MOST_POWERS, _MOST_COEFFICIENTS // len(curve.powers_of_set_point))
+    powers = powers_of_phi(0 not in curve.powers_of_phi, max(most, len(curve.eta)))
     largest = float(np.max(np.abs(phi)))
     x = phi / largest
     rows = [np.concatenate([x**e, e * x ** max(e - 1, 0)]) for e in powers]

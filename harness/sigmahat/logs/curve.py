@@ -17,6 +17,7 @@ from sigmahat.joint.sheet import Polynomial
 from sigmahat.joint.stored import LearnedLog, Range
 from sigmahat.logs.configuration import PORTS
 from sigmahat.logs.log import Array
+from sigmahat.logs.sampling import stretches
 
 NEEDED = (
     *("phi", "setPoint", "tau_e", "tau_e_residual", "epsilon", "a", "valid", "confident"),
@@ -146,8 +147,11 @@ def stiffness_at(
 
 _FAMILY = 5  # set-points of a curve whose set-point moves
 _MOST_LEVELS = 7  # set-points of a curve whose set-point takes a few values
-_GAP = 0.05
-"""Fraction of the range of the set-point: values further apart belong to different levels."""
+_BINS, _WIDEST = 40, 3
+"""Parts of the range of the set-point, and the most neighbouring ones that are one level."""
+_FEW = 0.01
+"""Fraction of the points: where there are fewer, the set-point only passed on its way."""
+_AT_LEVELS = 0.9  # fraction of the points at levels, if the set-point takes a few values
 _OUTER = 0.1
 """Percent of the points left out at either end: single wrong samples do not set the range."""
 
@@ -181,14 +185,14 @@ def reaches(points: MeasuredPoints, before: Sequence[LearnedLog], one_curve: boo
     of_setting = nearest(settings, points.set_point)
     for i, setting in enumerate(settings):
         own = points.phi[of_setting == i]
-        ranges = [_range(own)] if len(own) else []
+        ranges = [_range(own)] if len(own) > _FEW * len(points.phi) else []
         ranges += [
             each.phi
             for each in before
             if each.phi
             and each.set_point
             and (one_curve or each.set_point[0] <= setting <= each.set_point[1])
-            and (one_curve or not len(own) or each.set_point[0] == each.set_point[1])
+            and (one_curve or not ranges or each.set_point[0] == each.set_point[1])
         ]
         if phi := _union(ranges):
             found.append(Reach(setting, phi))
@@ -204,12 +208,13 @@ def _settings(values: Array, low: float, high: float, one_curve: bool) -> list[f
     """Set-points: levels of the data, else values evenly in the range."""
     if one_curve or not high - low > 1e-9 * max(abs(low), abs(high)):
         return [(low + high) / 2]
-    ordered = np.unique(values)
-    gap = _GAP * (high - low)
-    levels = np.split(ordered, np.flatnonzero(np.diff(ordered) > gap) + 1)
-    complete = len(ordered) > 0 and low == ordered[0] and high == ordered[-1]
-    if complete and len(levels) <= _MOST_LEVELS and all(np.ptp(each) < gap for each in levels):
-        return [float(np.median(each)) for each in levels]
+    if len(values) and low == values.min() and high == values.max():
+        part = np.minimum((_BINS * (values - low) / (high - low)).astype(int), _BINS - 1)
+        begins, ends = stretches(np.bincount(part, minlength=_BINS) > _FEW * len(values))
+        levels = [values[(part >= i) & (part < j)] for i, j in zip(begins, ends, strict=True)]
+        is_narrow = len(levels) <= _MOST_LEVELS and max(ends - begins, default=0) <= _WIDEST
+        if is_narrow and sum(map(len, levels)) >= _AT_LEVELS * len(values):
+            return [float(np.median(each)) for each in levels]
     evenly: list[float] = np.linspace(low, high, _FAMILY).tolist()
     return evenly
 
