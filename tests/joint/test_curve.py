@@ -245,6 +245,15 @@ def test_levels_of_the_set_point_are_found() -> None:
     moved = points(levels + 1e-3 * rng.normal(size=3000), rng.uniform(-1, 1, 3000))
     found = [r.set_point for r in reaches(moved, [], one_curve=False)]
     assert found == pytest.approx([1.0, 2.0, 5.0], abs=1e-3)
+    # WHEN the set-point is measured on its way from one level to the next, this is no level
+    way = np.concatenate([levels[:2000], np.linspace(2.0, 5.0, 60), levels[2000:]])
+    moved = points(way, rng.uniform(-1, 1, len(way)))
+    for_each = reaches(moved, [], one_curve=False)
+    assert [r.set_point for r in for_each] == pytest.approx([1.0, 2.0, 5.0])
+    # AND with two levels
+    way = np.concatenate([np.full(1000, 1.0), np.linspace(1.0, 5.0, 25), np.full(1000, 5.0)])
+    moved = points(way, rng.uniform(-1, 1, len(way)))
+    assert [r.set_point for r in reaches(moved, [], one_curve=False)] == [1.0, 5.0]
     assert np.array_equal(nearest(found, np.array([1.1, 1.5, 2.2, 9.0])), [0, -1, 1, -1])
 
 
