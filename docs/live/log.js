@@ -3,7 +3,8 @@
 
 const ASKED = ["motor.B", "motor.D_theta", GEAR, "rls.n", "range.phi", "prior.tau_e", "prior.B",
   "prior.D_theta", "prior.tau_coulomb", "noise.tau"];
-const ASKED_WITH_SETTING = ["rls.m", "setPoint.offset", "setPoint.scale", "range.setPoint"];
+const ASKED_WITH_SETTING = ["rls.m", "setPoint.offset", "setPoint.scale", "range.setPoint",
+  "range.setPoint_center"];
 
 const log = {
   form: document.getElementById("log"),
