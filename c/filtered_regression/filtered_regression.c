@@ -81,20 +81,18 @@ static void evaluate_filtered_regression(const sh_estimator *estimator, const sh
 
 /* ---- report ------------------------------------------------------------------------------- */
 
-/* Adds the coefficient of (s - c)^j phi^e, of set-point s, to those of s^k phi^e:
- *
- *     (s - c)^j = sum over k of binomial(j, k) (-c)^(j - k) s^k .
- */
-static void add_power(const sh_column *column, sh_real coefficient, sh_real center,
-                      sh_estimate *estimate)
+/* From the coefficients of powers of s - c to those of powers of the set-point s, by Horner's scheme. */
+static void shift_set_point(sh_estimate *estimate, sh_real c)
 {
-    const int i = column->i, j = column->j;
-    sh_real term = coefficient;
-    int k;
+    int i, j, k;
 
-    for (k = j; k >= 0; --k) {
-        estimate->eta[i][k] = sh_limited(estimate->eta[i][k] + term, SH_LARGEST_OUTPUT);
-        term *= -center * (sh_real)k / (sh_real)(j - k + 1);
+    for (i = 0; i < SH_MAX_N; ++i) {
+        for (k = 0; k < SH_MAX_M - 1; ++k) {
+            for (j = SH_MAX_M - 2; j >= k; --j) {
+                estimate->eta[i][j] = sh_limited(
+                    estimate->eta[i][j] - c * estimate->eta[i][j + 1], SH_LARGEST_OUTPUT);
+            }
+        }
     }
 }
 
@@ -104,21 +102,25 @@ static void read_coefficients(const sh_regression_state *state, const sh_paramet
 {
     int i, j;
 
-    (void)memset(estimate->eta, 0, sizeof estimate->eta);
     for (i = 0; i < state->columns.size; ++i) {
         const sh_column *column = &state->columns.column[i];
         sh_real value = column->prior * state->beta[i];
 
         if (sh_column_is(column, SH_IS_POWER)) {
-            add_power(column, value * column->unit, p->range.setPoint_center, estimate);
+            estimate->eta[column->i][column->j] =
+                sh_limited(value * column->unit, SH_LARGEST_OUTPUT);
         } else if (column->kind == SH_COLUMN_DAMPING) {
             value *= sh_limited(at->l[column->j], SH_LARGE);
         }
         sum[column->kind] += value;
     }
+    if (sh_fabs(p->range.setPoint_center) > 0 && p->prior.tau_e > 0) {
+        shift_set_point(estimate, p->range.setPoint_center);
+    }
     for (i = 0; i < p->rls.n && state->columns.has_nominal; ++i) {
         for (j = 0; j < p->rls.m; ++j) {
-            estimate->eta[i][j] += (1 + sum[SH_COLUMN_NOMINAL]) * p->rls.eta_0[i][j];
+            estimate->eta[i][j] = (p->prior.tau_e > 0 ? estimate->eta[i][j] : 0) +
+                                  (1 + sum[SH_COLUMN_NOMINAL]) * p->rls.eta_0[i][j];
         }
     }
 }
