@@ -89,8 +89,9 @@ static void shift_set_point(sh_estimate *estimate, sh_real c)
     for (i = 0; i < SH_MAX_N; ++i) {
         for (k = 0; k < SH_MAX_M - 1; ++k) {
             for (j = SH_MAX_M - 2; j >= k; --j) {
-                estimate->eta[i][j] = sh_limited(
-                    estimate->eta[i][j] - c * estimate->eta[i][j + 1], SH_LARGEST_OUTPUT);
+                const sh_real shifted = estimate->eta[i][j] - c * estimate->eta[i][j + 1];
+
+                estimate->eta[i][j] = sh_limited(shifted, SH_LARGEST_OUTPUT);
             }
         }
     }
