@@ -214,6 +214,20 @@ def test_ranges_hold_what_the_log_shows(found: Found, path: Path) -> None:
     assert read["range.setPoint_center"] == pytest.approx((lever.min() + lever.max()) / 2)
 
 
+def test_a_log_at_one_set_point_keeps_the_order_that_others_need(found: Found, path: Path) -> None:
+    at_one = replace(found[1.0], set_point_moves=False, m=1, set_point_center=0.0)
+    given = {"rls.m": 3, "range.setPoint": 40.0, "range.setPoint_center": 70.0}
+    lines = [f"{name} = {value}" for name, value in given.items()]
+    path.write_text("\n".join([CONFIGURATION, *lines]))
+    write(at_one, path)
+    read = read_configuration(path).parameters
+    assert {name: read[name] for name in given} == given
+    # WHEN nobody has given an order, it is 1
+    path.write_text(CONFIGURATION)
+    write(at_one, path)
+    assert read_configuration(path).parameters["rls.m"] == 1
+
+
 def test_a_motor_that_is_off_shows_nothing_of_itself() -> None:
     """GIVEN a link that a hand moves while the motor has no torque, THEN no 0 is written for it."""
     found, with_torque = (identified(log_by_hand(hold), RIGHT) for hold in (0.0, 0.05))

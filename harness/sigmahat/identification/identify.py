@@ -147,6 +147,7 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
         else knees(thinned, h, gamma, motor.polynomial, center),
         set_point=set_point,
         set_point_center=middle,
+        set_point_moves=any(np.ptp(piece.set_point) > 0 for piece in pieces),
         torque=0.0
         if no_torque
         else max(spring, *(abs(gamma) * float(np.max(np.abs(each.tau))) for each in pieces)),

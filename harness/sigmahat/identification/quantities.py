@@ -64,6 +64,7 @@ class Identified:
     """Up to two deformations at which the slope of the spring changes at once [rad]."""
     set_point: float  #: Largest distance of the set-point from its center [1].
     set_point_center: float  #: Middle of the set-points; 0 if the torque does not depend on it [1].
+    set_point_moves: bool  #: Whether it differs in the log; else m is 1, whatever the joint is.
     torque: float
     """Largest magnitude of the torque of the motor after its gear, or of the spring [N.m]."""
     B: float  #: That of the configuration [kg.m2].

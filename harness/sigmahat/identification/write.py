@@ -30,6 +30,7 @@ _ABOVE = 1.4
 """regression.bandwidth over the balance of the noises: it costs no accuracy, and follows faster."""
 _ROOM = 1.2  # ranges over the largest values of the log: another motion may go further
 _KNEES = ("range.knee", "range.knee_2")
+_OF_SET_POINT = ("rls.m", "range.setPoint", "range.setPoint_center")
 _ERROR_OF_B = 0.15
 """Least relative prior of B: RMS of its error on joints whose friction or spring the regression has
 no columns for. There the error is up to five times the interval, which contains only chance."""
@@ -83,7 +84,13 @@ def update(document: tomlkit.TOMLDocument, found: Identified, joint: str = "") -
                 values[f"motor.{name}"] = q.value
             if name == "B":  # but not for D_theta, which changes with the temperature
                 values["prior.B"] = max(q.half_width / q.value, _ERROR_OF_B)
-    values = {name: _short(value) for name, value in values.items() if value is False or value != 0}
+    # The log may be one of several, each at another set-point.
+    kept = _OF_SET_POINT if given.get("rls.m") and not found.set_point_moves else ()
+    values = {
+        name: _short(value)
+        for name, value in values.items()
+        if name not in kept and (value is False or value != 0)
+    }
     parameters = own.setdefault("parameters", tomlkit.table())
     unknown = {name: each for name, each in _unknown(found).items() if name not in given}
     comments = {name: comment for name, (_, comment) in unknown.items()}

@@ -180,7 +180,7 @@ FAMILY_HEAD = (
 )
 
 
-_MOST_SETTINGS = 4  # largest number of set-points in a headline
+_MOST_SETTINGS = 5  # largest number of set-points in a headline
 
 
 def headline(curve: Curve, doubt: str) -> str:
