@@ -131,6 +131,11 @@
  */
 #define SH_FIRST_GAIN ((sh_real)3)
 #define SH_GAIN_PER_BLOCK ((sh_real)0.05)
+/* The same for possible knees [1]: beside coarse encoders, a knee that changes sigma by a third is a small evidence.
+ * With 0.05, the interval held 84 % of the confident instants of such springs, with 0.01 89 %, and springs without
+ * knees lose nothing.
+ */
+#define SH_KNEE_GAIN_PER_BLOCK ((sh_real)0.01)
 
 /* ---- what is reported, filtered_regression.c --------------------------------------------- */
 

@@ -116,12 +116,14 @@ static sh_real gain_of_evidence(const sh_regression_state *state)
     return gain;
 }
 
-/* A group is used above 3 + 0.05 N, and no longer below 0.025 N. */
+/* A group is used above 3 + 0.05 N, and no longer below 0.025 N; knees above 3 + 0.01 N, and below 0.005 N. */
 static void decide_about_group(sh_regression_state *state)
 {
     sh_refit *refit = &state->refit;
+    const int are_knees = refit->trial == sh_column_kinds[SH_COLUMN_POSSIBLE_KNEE].group;
     const sh_real gain = gain_of_evidence(state),
-                  per_blocks = SH_GAIN_PER_BLOCK * state->blocks.count;
+                  per_blocks = (are_knees ? SH_KNEE_GAIN_PER_BLOCK : SH_GAIN_PER_BLOCK) *
+                               state->blocks.count;
 
     if (gain > SH_FIRST_GAIN + per_blocks) {
         refit->used[refit->trial] = 1;

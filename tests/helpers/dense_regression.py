@@ -318,7 +318,9 @@ class Oracle:
         own = sum(self.groups[i] != self.trial for i in self.build.chosen)
         gain = self.evidence(len(self.build.chosen)) - self.evidence(own)
         N, used = self.blocks.count, self.used[self.trial]
-        self.used[self.trial] = 1 if gain > 3 + 0.05 * N else 0 if gain < 0.025 * N else used
+        per_block = 0.01 if self.trial == 3 else 0.05  # 3: possible knees
+        limit = per_block * N
+        self.used[self.trial] = 1 if gain > 3 + limit else 0 if gain < limit / 2 else used
         if self.used[self.trial]:
             self.once_used.add(self.trial)
 
