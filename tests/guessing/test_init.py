@@ -98,6 +98,7 @@ def test_no_column_that_looks_like_a_port(shell: Shell) -> None:
     assert "#   x: 9 samples, 0 to 3; a few values only" in text
     assert "#   note: 9 samples; text" in text
     assert set(read()["ports"]) == {"theta", "q", "tau"}
+    assert read()["parameters"]["setPoint"] == {"offset": 0, "scale": 1}  # not those of the AwAS
     assert "motor.gamma is 0; fill in the gear ratio" in shell.refused("estimate log.csv")
     text = text.replace("motor.gamma = 0", "motor.gamma = 9")
     Path("log.toml").write_text(text)

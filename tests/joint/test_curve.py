@@ -3,6 +3,9 @@
 import csv
 import json
 import re
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +23,7 @@ from recorded_logs import (
     in_memory,
     write_log,
 )
+from sigmahat import Estimator
 from sigmahat.cli import main
 from sigmahat.joint.curve import (
     CURVE,
@@ -37,6 +41,7 @@ from sigmahat.logs.configuration import read_configuration
 from sigmahat.logs.curve import POINTS, MeasuredPoints, reaches, read_points
 from sigmahat.logs.estimate import Estimate, estimate
 from sigmahat.logs.log import LogInMemory
+from sigmahat.logs.panels import curve_panels
 from sigmahat.logs.readers.formats import open_log
 
 GAIN = 0.02
@@ -245,16 +250,28 @@ def test_levels_of_the_set_point_are_found() -> None:
     moved = points(levels + 1e-3 * rng.normal(size=3000), rng.uniform(-1, 1, 3000))
     found = [r.set_point for r in reaches(moved, [], one_curve=False)]
     assert found == pytest.approx([1.0, 2.0, 5.0], abs=1e-3)
-    # WHEN the set-point is measured on its way from one level to the next, this is no level
-    way = np.concatenate([levels[:2000], np.linspace(2.0, 5.0, 60), levels[2000:]])
-    moved = points(way, rng.uniform(-1, 1, len(way)))
-    for_each = reaches(moved, [], one_curve=False)
-    assert [r.set_point for r in for_each] == pytest.approx([1.0, 2.0, 5.0])
-    # AND with two levels
-    way = np.concatenate([np.full(1000, 1.0), np.linspace(1.0, 5.0, 25), np.full(1000, 5.0)])
-    moved = points(way, rng.uniform(-1, 1, len(way)))
-    assert [r.set_point for r in reaches(moved, [], one_curve=False)] == [1.0, 5.0]
     assert np.array_equal(nearest(found, np.array([1.1, 1.5, 2.2, 9.0])), [0, -1, 1, -1])
+
+
+@pytest.mark.parametrize("levels", [(1.0, 2.0, 5.0), (1.0, 5.0)])
+def test_the_way_from_one_level_of_the_set_point_to_the_next_is_none(
+    levels: Sequence[float],
+) -> None:
+    ways = [np.linspace(*ends, 25) for ends in pairwise(levels)]
+    path = np.concatenate([*(np.full(1000, level) for level in levels), *ways])
+    moved = points(path, np.random.default_rng(1).uniform(-1, 1, len(path)))
+    assert [r.set_point for r in reaches(moved, [], one_curve=False)] == pytest.approx(levels)
+
+
+def test_a_band_that_is_wide_leaves_the_curve_visible() -> None:
+    phi = np.linspace(-0.1, 0.1, 11)
+    std = np.where(np.abs(phi) > 0.09, 1e8, 1.0)
+    branch = Branch(0.0, (-0.1, 0.1), phi, 50 * phi, std, 50 + 0 * phi, std)
+    panels = curve_panels(Curve(OF_KNEE, [branch]), points(np.zeros(1), np.zeros(1)))
+    assert [panel.y_range for panel in panels] == [
+        pytest.approx((-11.0, 11.0), rel=0.1),
+        pytest.approx((-10.0, 110.0), rel=0.1),
+    ]
 
 
 # ---- a curve with knees, as the nearest polynomial -----------------------------------------------
@@ -290,6 +307,15 @@ def test_more_powers_come_near_a_knee(low: int) -> None:
         assert np.std(error) < 2 * np.std(best - wanted)
         assert abs(np.mean(error)) < 0.2 * np.std(error)
     assert found.powers_of_phi == list(range(8)) and found.eta[1][1] == 3.0
+
+
+def test_the_estimator_has_columns_for_the_powers_near_a_knee() -> None:
+    """GIVEN as many powers of the set-point as identify writes, and two knees."""
+    many = replace(OF_KNEE, powers_of_set_point=[0, 1, 2, 3], eta=[[1.0] * 4] * 4)
+    torque, slope = many.at(ANGLES, SETTINGS)
+    start = start_of(with_knees(many, ANGLES, SETTINGS, torque, slope + (ANGLES > 0.1)))
+    knees = {"rls.symmetric": False, "range.knee": 0.3, "range.knee_2": 0.6}
+    Estimator({"method": "FilteredRegression", **knees, **start})
 
 
 def test_the_start_values_are_the_curve() -> None:

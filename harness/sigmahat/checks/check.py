@@ -63,8 +63,11 @@ def check(log: Log, configuration: Configuration) -> Checked:
         (outputs,) = play(slave, seen.samples, len(seen.samples.values))
     if not any(each.severity is Severity.WRONG for each in findings):
         # After a wrong value, the findings of the replay are only consequences of this value.
-        no_torque = any(each.kind is Kind.NO_TORQUE for each in findings)
-        findings += _replayed(seen, outputs, no_torque)
+        replayed = _replayed(seen, outputs)
+        if any(each.kind is Kind.NO_TORQUE for each in findings):
+            # Without a torque, a negative stiffness says nothing of a sign.
+            replayed = (each for each in replayed if each.about != "NegativeStiffness")
+        findings += replayed
     is_regression = every["method"] == "FilteredRegression"
     per_gain = float(outputs["sigma_per_gain"][-1]) if is_regression else 1.0
     findings += rests_on(configuration, every, fmu.parameters({}), per_gain)
@@ -256,11 +259,8 @@ def rests_on(
         yield Finding(Kind.ABSENT, Severity.RESTS_ON, f"prior.{name}", 0.0, "", about=name)
 
 
-def _replayed(seen: View, outputs: Outputs, no_torque: bool) -> Iterator[Finding]:
-    """What the estimator itself reports when the log is replayed.
-
-    no_torque  whether the torque is only noise: then a negative stiffness says nothing of a sign
-    """
+def _replayed(seen: View, outputs: Outputs) -> Iterator[Finding]:
+    """What the estimator itself reports when the log is replayed."""
     yield from _range(seen, outputs)
     yield from _noise(seen)
     valid = outputs["valid"]
@@ -268,11 +268,7 @@ def _replayed(seen: View, outputs: Outputs, no_torque: bool) -> Iterator[Finding
     if learned < _LEARNED:
         yield Finding(Kind.LEARNED, Severity.NOTE, "time.longest_gap", learned, "", 1.0)
     if seen.every["method"] == "FilteredRegression":
-        yield from (
-            each
-            for each in _claims(outputs)
-            if not (no_torque and each.about == "NegativeStiffness")
-        )
+        yield from _claims(outputs)
 
 
 def _range(seen: View, outputs: Outputs) -> Iterator[Finding]:

@@ -17,7 +17,7 @@ from sigmahat.identification.coherence import coherent_range, is_hidden
 from sigmahat.identification.motor import KnownInertia, fit_motor
 from sigmahat.identification.noise import TorqueNoise, count, is_only_noise, low_pass
 from sigmahat.identification.quantities import WIDE, Identified, Quantity
-from sigmahat.identification.regression import Signals, shortest, signals_of
+from sigmahat.identification.regression import Signals, set_point_moves, shortest, signals_of
 from sigmahat.identification.spring import (
     change_of_spring,
     knees,
@@ -147,7 +147,7 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
         else knees(thinned, h, gamma, motor.polynomial, center),
         set_point=set_point,
         set_point_center=middle,
-        set_point_moves=any(np.ptp(piece.set_point) > 0 for piece in pieces),
+        set_point_moves=set_point_moves(pieces),
         torque=0.0
         if no_torque
         else max(spring, *(abs(gamma) * float(np.max(np.abs(each.tau))) for each in pieces)),

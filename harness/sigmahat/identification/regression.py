@@ -341,6 +341,10 @@ def units(pieces: Sequence[Signals]) -> tuple[float, float]:
     return phi or 1.0, set_point or 1.0
 
 
+def set_point_moves(pieces: Sequence[Signals]) -> bool:
+    return any(np.ptp(piece.set_point) > 0 for piece in pieces)
+
+
 def _first(x: Array, h: float) -> Array:
     """First derivative, of fourth order in h; the two values at each end are not valid."""
     r = np.roll

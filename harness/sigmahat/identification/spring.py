@@ -24,6 +24,7 @@ from sigmahat.identification.regression import (
     factor,
     fit,
     is_worse,
+    set_point_moves,
     units,
 )
 from sigmahat.joint.sheet import powers_of_phi
@@ -143,7 +144,7 @@ def change_of_spring(system: Equations, pieces: Sequence[Signals]) -> int | None
 
     Samples are counted over all pieces, of which these are the plain equations.
     """
-    if any(np.ptp(piece.set_point) > 0 for piece in pieces):
+    if set_point_moves(pieces):
         return None
     scale = system.scale
     R = system.R / np.append(np.where(scale > 0, scale, 1.0), 1.0)

@@ -33,11 +33,24 @@ def since_change(outputs: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]
 
     All of them without a change, and if the regression has used nothing since.
     """
-    age, used = outputs["change_age"], outputs["valid"].astype(bool) & (outputs["a"] > 0)
-    before = np.concatenate([[-1.0], age[:-1]])
-    begins = np.flatnonzero((age >= 0) & ((age < before) | (before < 0)))
-    first = int(begins[-1]) if len(begins) and used[begins[-1] :].any() else 0
+    begins = restarts(outputs["change_age"])
+    first = int(begins[-1]) if len(begins) and _used(outputs)[begins[-1] :].any() else 0
     return {name: values[first:] for name, values in outputs.items()}
+
+
+def restarts(age: NDArray[np.float64], before: float = -1.0) -> NDArray[np.intp]:
+    """Indices at which the output change_age starts again.
+
+    before  its value before the first index [s]
+    """
+    last = np.concatenate([[before], age[:-1]])
+    return np.flatnonzero((age >= 0) & ((age < last) | (last < 0)))
+
+
+def _used(outputs: Mapping[str, NDArray[Any]]) -> NDArray[np.bool_]:
+    """The ticks from which the estimator has learned."""
+    used: NDArray[np.bool_] = outputs["valid"].astype(bool) & (outputs["a"] > 0)
+    return used
 
 
 @dataclass(frozen=True)
@@ -58,7 +71,7 @@ def points_of(outputs: Mapping[str, NDArray[Any]], method: str) -> MeasuredPoint
 
     outputs  of the estimator by name, of one size
     """
-    used = outputs["valid"].astype(bool) & (outputs["a"] > 0)
+    used = _used(outputs)
     regression = method == "FilteredRegression"
     tau_e = outputs["tau_e"] + outputs["epsilon"] if regression else outputs["tau_e_residual"]
     return MeasuredPoints(outputs["phi"][used], outputs["setPoint"][used], tau_e[used])

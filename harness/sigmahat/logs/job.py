@@ -13,7 +13,16 @@ from sigmahat.fmi.instance import Slave, Value
 from sigmahat.joint.sheet import powers_of_phi
 from sigmahat.joint.stored import LearnedLog, Range
 from sigmahat.logs.configuration import Configuration
-from sigmahat.logs.curve import NEEDED, Answer, curve, points_of, shown_points, since_change, spread
+from sigmahat.logs.curve import (
+    NEEDED,
+    Answer,
+    curve,
+    points_of,
+    restarts,
+    shown_points,
+    since_change,
+    spread,
+)
 from sigmahat.logs.learned import Learned, go_on
 from sigmahat.logs.log import Array, Log
 from sigmahat.logs.replay import OUTPUTS, parameters, play
@@ -129,8 +138,7 @@ def detected(
     before    value of change_age before the first index [s]
     followed  whether no change was before, or an estimate was confident since the last change
     """
-    last = np.concatenate([[before], age[:-1]])
-    starts = np.flatnonzero((age >= 0) & ((age < last) | (last < 0)))
+    starts = restarts(age, before)
     count = np.cumsum(confident)[starts]
     return starts[np.diff(count, prepend=-1 if followed else 0) > 0]
 
