@@ -310,11 +310,12 @@ def test_more_powers_come_near_a_knee(low: int) -> None:
 
 
 def test_the_estimator_has_columns_for_the_powers_near_a_knee() -> None:
-    """GIVEN as many powers of the set-point as identify writes, and two knees."""
-    many = replace(OF_KNEE, powers_of_set_point=[0, 1, 2, 3], eta=[[1.0] * 4] * 4)
+    """GIVEN the powers of the set-point that identify writes, the one more that the estimator may
+    use, and two knees."""
+    many = replace(OF_KNEE, powers_of_set_point=[0, 1, 2, 3, 4], eta=[[1.0] * 5] * 4)
     torque, slope = many.at(ANGLES, SETTINGS)
     start = start_of(with_knees(many, ANGLES, SETTINGS, torque, slope + (ANGLES > 0.1)))
-    knees = {"rls.symmetric": False, "range.knee": 0.3, "range.knee_2": 0.6}
+    knees = {"rls.symmetric": False, "range.knee": 0.3, "range.knee_2": 0.6, "prior.B": 0.15}
     Estimator({"method": "FilteredRegression", **knees, **start})
 
 
