@@ -68,7 +68,7 @@ const sh_column_kind sh_column_kinds[SH_COLUMN_KINDS] = {
     [SH_COLUMN_DAMPING] = {PRIOR(damping), K_0, SH_SIGNAL_STEADY, 0, 0},
     [SH_COLUMN_SIN_Q] = {PRIOR(eccentric), K_0, SH_SIGNAL_LINEAR, 0, 0},
     [SH_COLUMN_COS_Q] = {PRIOR(eccentric), K_0, SH_SIGNAL_LINEAR, 0, 0},
-    [SH_COLUMN_LOAD] = {PRIOR(load_friction), ONE, SH_SIGNAL_MEAN, 0, SH_IS_MOTOR},
+    [SH_COLUMN_LOAD] = {PRIOR(load_friction), ONE, SH_SIGNAL_NONE, 0, SH_IS_MOTOR},
     [SH_COLUMN_DRIVE] = {PRIOR(load_friction), ONE, SH_SIGNAL_NONE, 0, SH_IS_MOTOR},
     [SH_COLUMN_DELAY] = {PRIOR(delay), ONE, SH_SIGNAL_NONE, 0, 0},
     [SH_COLUMN_REVERSAL] = {PRIOR(reversal), TAU_C, SH_SIGNAL_NONE, 0, SH_IS_MOTOR},
@@ -405,18 +405,17 @@ sh_real sh_columns_judge_knees(const sh_columns *columns, const sh_parameters *p
 
     for (i = 0; i < columns->spring; ++i) {
         const sh_column *column = &columns->column[i];
-        const sh_real outside = slope - at->dF[i] * beta[i]; /* of a dead zone */
-        sh_real jump = beta[i] * column->prior / p->range.phi;
 
-        if (may_be_knee(column)) {
-            jump /= column->place;
-        } else if (!is_knee(column)) {
-            continue;
-        }
-        if (may_be_knee(column) && outside + jump < SH_GAP * outside) {
-            at->dF[i] = 0;
-        } else if (is_beside(column, p, x)) {
-            variance += sh_square(jump / 2);
+        if (may_be_knee(column) || is_knee(column)) {
+            const sh_real outside = slope - at->dF[i] * beta[i]; /* of a dead zone */
+            const sh_real width = may_be_knee(column) ? column->place : 1;
+            const sh_real jump = beta[i] * column->prior / p->range.phi / width;
+
+            if (may_be_knee(column) && outside + jump < SH_GAP * outside) {
+                at->dF[i] = 0;
+            } else if (is_beside(column, p, x)) {
+                variance += sh_square(jump / 2);
+            }
         }
     }
     return variance;
@@ -472,6 +471,18 @@ sh_real sh_columns_y(const sh_parameters *p, const sh_filter_design *design,
            (sh_is_measured(p) ? 0 : motor_torque(p, design, &filter[SH_FILTER_THETA]));
 }
 
+/* Mean of the filter of column i. */
+static sh_state_variable_filter own_filter(const sh_regression_state *state, int i)
+{
+    const sh_column_filters *sum = &state->mean.columns;
+    const sh_real share = 1 / (sh_real)state->signals.decimation;
+    const sh_state_variable_filter own = {
+        share * sum->input[i],
+        {share * sum->behind[0][i], share * sum->behind[1][i], share * sum->behind[2][i]}};
+
+    return own;
+}
+
 /* sigma S + gamma^2 (D_theta S' + B S''): the error of y by the error S of theta; 0 while sigma is not
  * known, detail 13.
  */
@@ -485,23 +496,22 @@ static sh_real encoder_error(const sh_regression_state *state, const sh_paramete
 }
 
 /* Entry of column i over its prior, or with it where the column has a filter of its own. */
-static sh_real entry_of(const sh_regression_state *state, const sh_parameters *p,
-                        const sh_state_variable_filter *filter, int i)
+static sh_real entry_of(const sh_regression_state *state, const sh_parameters *p, int i)
 {
     const sh_filter_design *design = &state->signals.design;
+    const sh_state_variable_filter *filter = state->mean.filter, own = own_filter(state, i);
     const sh_state_variable_filter *theta = &filter[SH_FILTER_THETA],
                                    *tau = &filter[SH_FILTER_TORQUE];
-    const sh_state_variable_filter *sign = &filter[SH_FILTER_SIGN],
-                                   *own = &filter[SH_FILTER_COLUMN + i];
+    const sh_state_variable_filter *sign = &filter[SH_FILTER_SIGN];
     const sh_real gamma = p->motor.gamma, gain = sh_is_measured(p) ? 1 : -gamma;
 
     switch (state->columns.column[i].kind) {
     case SH_COLUMN_NOMINAL:
         return sh_state_variable_filter_output(&filter[SH_FILTER_NOMINAL]);
     case SH_COLUMN_DAMPING: /* phi' l^j */
-        return sh_state_variable_filter_first(own, design);
+        return sh_state_variable_filter_first(&own, design);
     case SH_COLUMN_LOAD: /* -|tau_e| s through the filter */
-        return as_if_smooth(own, design);
+        return as_if_smooth(&filter[SH_FILTER_LOAD], design);
     case SH_COLUMN_DRIVE: /* -|gamma tau_f| s_f */
         return -sh_fabs(torque_in_y(p, design, filter)) * as_if_smooth(sign, design);
     case SH_COLUMN_DELAY: /* gamma (tau' + delay tau''/2) */
@@ -511,7 +521,7 @@ static sh_real entry_of(const sh_regression_state *state, const sh_parameters *p
         return sh_fabs(gamma) * sh_state_variable_filter_first(sign, design);
     case SH_COLUMN_SIN_M:
     case SH_COLUMN_COS_M:
-        return encoder_error(state, p, own);
+        return encoder_error(state, p, &own);
     case SH_COLUMN_VISCOUS: /* -gamma^2 D_theta theta'_f */
         return -gamma * gamma * p->motor.D_theta * sh_state_variable_filter_first(theta, design);
     case SH_COLUMN_COULOMB: /* -|gamma| s_f */
@@ -519,14 +529,14 @@ static sh_real entry_of(const sh_regression_state *state, const sh_parameters *p
     case SH_COLUMN_INERTIA: /* -gamma^2 B theta''_f */
         return -gamma * gamma * p->motor.B * sh_state_variable_filter_second(theta, design);
     default:
-        return sh_state_variable_filter_output(own);
+        return sh_state_variable_filter_output(&own);
     }
 }
 
-void sh_columns_row(const sh_regression_state *state, const sh_parameters *p,
-                    const sh_state_variable_filter *filter, sh_real *x)
+void sh_columns_row(const sh_regression_state *state, const sh_parameters *p, sh_real *x)
 {
     const sh_filter_design *design = &state->signals.design;
+    const sh_state_variable_filter *filter = state->mean.filter;
     const int size = state->columns.size;
     int i;
 
@@ -536,7 +546,7 @@ void sh_columns_row(const sh_regression_state *state, const sh_parameters *p,
 
         x[i] = sh_is_measured(p) && sh_column_is(column, SH_IS_MOTOR)
                    ? 0
-                   : (has_filter ? 1 : column->prior) * entry_of(state, p, filter, i);
+                   : (has_filter ? 1 : column->prior) * entry_of(state, p, i);
     }
     x[size + SH_RIGHT_GAIN] = torque_in_y(p, design, filter);
     x[size + SH_RIGHT_Y] = sh_columns_y(p, design, filter);

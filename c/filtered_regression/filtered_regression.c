@@ -263,15 +263,14 @@ static int take_sample(sh_regression_state *state, const sh_parameters *p)
     sh_row *row = &state->row;
 
     sh_noise_watch(&state->history, signals, p);
-    sh_state_variable_filter_add(mean->filter, signals->filter,
-                                 SH_FILTER_COLUMN + state->columns.size, share);
+    sh_state_variable_filter_add(mean->filter, signals->filter, SH_FILTERS, share);
     mean->rough += sh_signals_roughness(signals) * share;
     mean->moved += sh_fabs(signals->theta_before[0] - signals->theta_before[1]) > 0 ? share : 0;
     mean->samples += 1;
     if (mean->samples < signals->decimation) {
         return 0;
     }
-    sh_columns_row(state, p, mean->filter, row->x);
+    sh_columns_row(state, p, row->x);
     row->rough = mean->rough;
     row->moved = mean->moved;
     (void)memset(mean, 0, sizeof *mean);
@@ -348,14 +347,13 @@ static int use_row(sh_regression_state *state, const sh_parameters *p)
 /* What else a row changes: step 0 to 5, at most one triangular matrix each. */
 static void take_step(sh_regression_state *state, const sh_parameters *p, int step)
 {
-    const sh_row *row = &state->row;
-    sh_real x[SH_MAX_ROW] = {0};
-
     if (step == 0) { /* before the data: a refit that starts later has this row from them */
         sh_refit_take(state);
     } else if (step == 1) {
-        (void)memcpy(x, row->x, sizeof x);
-        (void)sh_information_take(&state->data, x, row->w);
+        sh_real x[SH_MAX_ROW];
+
+        (void)memcpy(x, state->row.x, sizeof x);
+        (void)sh_information_take(&state->data, x, state->row.w);
     } else if (step == 2) {
         sh_blocks_take(state);
     }
@@ -409,7 +407,6 @@ static void wait_until_settled(sh_regression_state *state)
 static void resume(sh_regression_state *state)
 {
     state->signals.begun = 0;
-    (void)memset(&state->mean, 0, sizeof state->mean);
     wait_until_settled(state);
 }
 
@@ -417,6 +414,7 @@ static void resume(sh_regression_state *state)
 static int refuse(sh_regression_state *state, const sh_history *before)
 {
     state->signals.begun = 0; /* the filters start again, so their old state does not matter */
+    (void)memset(&state->mean, 0, sizeof state->mean);
     state->history = *before;
     state->sigma = state->delay = state->y = 0;
     state->stiffness_known = 0;
@@ -458,6 +456,7 @@ static int tick_filtered_regression(sh_estimator *estimator, const sh_parameters
     }
     if (!settled) {
         state->row.epsilon = state->row.rho = 0;
+        (void)memset(&state->mean, 0, sizeof state->mean); /* the filters add every sample */
     }
     return report(state, p, &at, y, settled, estimate) ? 1 : refuse(state, &before); /* 7. */
 }

@@ -156,23 +156,24 @@ static void add_row(sh_combination *sum, sh_real v, sh_real D, const sh_real *z)
 sh_combinations sh_information_combine(const sh_information *a, const sh_last_row *last,
                                        sh_real *first, sh_real *second)
 {
-    const int size = a->size;
+    const int end = a->size - 1;
     const sh_real *row = a->U;
     sh_combinations found = {{{0, 0}, 0}, {{0, 0}, 0}};
     int i;
 
-    for (i = 0; i < size; ++i) {
-        const int count = size - 1 - i;
-        const sh_real *z = i < size - 1 ? row + count : last->z;
-        const sh_real D = i < size - 1 ? a->D[i] : last->D;
+    for (i = 0; i < end; ++i) {
+        const int count = end - i;
+        const sh_real v = first[i], w = second[i];
 
-        if (sh_fabs(first[i]) > 0 || sh_fabs(second[i]) > 0) {
-            subtract(first + i + 1, second + i + 1, row, count, first[i], second[i]);
-            add_row(&found.first, first[i], D, z);
-            add_row(&found.second, second[i], D, z);
+        if (sh_fabs(v) > 0 || sh_fabs(w) > 0) {
+            subtract(first + i + 1, second + i + 1, row, count, v, w);
+            add_row(&found.first, v, a->D[i], row + count);
+            add_row(&found.second, w, a->D[i], row + count);
         }
         row += count + SH_RIGHT_SIDES;
     }
+    add_row(&found.first, first[end], last->D, last->z);
+    add_row(&found.second, second[end], last->D, last->z);
     return found;
 }
 

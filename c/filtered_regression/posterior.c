@@ -119,8 +119,10 @@ sh_combinations sh_posterior_combine(const sh_posterior *posterior, sh_real prio
     for (i = 0; i < posterior->information.size; ++i) {
         const int of_data = posterior->column[i];
 
-        own_first[i] = of_data < count ? first[of_data] : 0;
-        own_second[i] = of_data < count ? second[of_data] : 0;
+        if (of_data < count) {
+            own_first[i] = first[of_data];
+            own_second[i] = second[of_data];
+        }
     }
     return sh_information_combine(&posterior->information, &last, own_first, own_second);
 }

@@ -70,10 +70,9 @@ enum {
 
 /* How the filter of a column takes its signal. */
 enum {
-    SH_SIGNAL_NONE,   /* it has no filter */
+    SH_SIGNAL_NONE,   /* it has no filter of its own */
     SH_SIGNAL_LINEAR, /* linear between samples; it begins with a jump from 0, as the torque */
-    SH_SIGNAL_STEADY, /* linear between samples; it begins as if it had been so before */
-    SH_SIGNAL_MEAN    /* given by its mean over the sample */
+    SH_SIGNAL_STEADY  /* linear between samples; it begins as if it had been so before */
 };
 
 typedef struct {
@@ -128,15 +127,14 @@ void sh_columns_move_stops(sh_real *stop, const sh_parameters *p, sh_real change
 /* Torque of the spring for coefficients beta [N.m]. */
 sh_real sh_columns_torque(const sh_columns *columns, const sh_joint_point *at, const sh_real *beta);
 
-/* y [N.m] at a state of the filters [size: SH_MAX_FILTERS]. */
+/* y [N.m] at a state of the filters [size: SH_FILTERS]. */
 sh_real sh_columns_y(const sh_parameters *p, const sh_filter_design *design,
                      const sh_state_variable_filter *filter);
 
-/* The row x [size: SH_MAX_ROW] at a state of the filters: columns, then right-hand sides, of which the last is
- * y less the torque of the nominal curve.
+/* The row x [size: SH_MAX_ROW] by the mean of the filters: columns, then right-hand sides, of which the last is y
+ * less the torque of the nominal curve.
  */
-void sh_columns_row(const sh_regression_state *state, const sh_parameters *p,
-                    const sh_state_variable_filter *filter, sh_real *x);
+void sh_columns_row(const sh_regression_state *state, const sh_parameters *p, sh_real *x);
 
 /* Detail 14: removes from the column of the motor's torque in x the noise that y contains too, if the
  * prediction error of y is epsilon [N.m]. Sets the noise that is left, times R. Returns by how much the

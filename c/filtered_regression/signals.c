@@ -90,11 +90,12 @@ static void begin_filters(sh_regression_state *state, const sh_joint_point *at, 
     sh_state_variable_filter_start(&filter[SH_FILTER_NOMINAL], at->tau_nominal, 0);
     sh_state_variable_filter_start(&filter[SH_FILTER_SIGN], 0, 0);
     sh_state_variable_filter_start(&filter[SH_FILTER_UNKNOWN], 0, 0);
+    sh_state_variable_filter_start(&filter[SH_FILTER_LOAD], 0, 0);
     for (i = 0; i < state->columns.size; ++i) {
         const int signal = sh_column_kinds[state->columns.column[i].kind].signal;
 
-        sh_state_variable_filter_start(&filter[SH_FILTER_COLUMN + i], at->F[i],
-                                       signal == SH_SIGNAL_LINEAR ? 0 : at->F[i]);
+        sh_column_filters_start(&signals->columns, &state->mean.columns, i, at->F[i],
+                                signal == SH_SIGNAL_LINEAR ? 0 : at->F[i]);
     }
     sh_motion_sign_start(&signals->motion, at->theta);
     for (i = 0; i < 5; ++i) {
@@ -129,27 +130,14 @@ static void advance_measured(sh_signals *signals, const sh_parameters *p, sh_rea
 /* The friction by load acts against the motion. Before the stiffness is known, the load is taken from
  * the motor data: it is the last y (detail 13).
  */
-static void advance_columns(sh_regression_state *state, const sh_joint_point *at)
+static void advance_load(sh_regression_state *state, const sh_joint_point *at)
 {
-    const sh_columns *columns = &state->columns;
     sh_signals *signals = &state->signals;
-    const sh_filter_design *design = &signals->design;
-    sh_state_variable_filter *filter = signals->filter;
     const sh_real load =
-        state->stiffness_known ? sh_columns_torque(columns, at, state->beta) : state->y;
-    const sh_real friction = -sh_fabs(load) * signals->motion.sign;
-    int i;
+        state->stiffness_known ? sh_columns_torque(&state->columns, at, state->beta) : state->y;
 
-    for (i = 0; i < columns->size; ++i) {
-        const int signal = sh_column_kinds[columns->column[i].kind].signal;
-
-        if (signal == SH_SIGNAL_MEAN) {
-            sh_state_variable_filter_step_mean(&filter[SH_FILTER_COLUMN + i], design,
-                                               friction * columns->column[i].prior);
-        } else if (signal != SH_SIGNAL_NONE) {
-            sh_state_variable_filter_step(&filter[SH_FILTER_COLUMN + i], design, at->F[i]);
-        }
-    }
+    sh_state_variable_filter_step_mean(&signals->filter[SH_FILTER_LOAD], &signals->design,
+                                       -sh_fabs(load) * signals->motion.sign);
 }
 
 void sh_signals_take(sh_regression_state *state, const sh_parameters *p, const sh_measurement *z,
@@ -167,7 +155,9 @@ void sh_signals_take(sh_regression_state *state, const sh_parameters *p, const s
                                           at->tau_nominal);
         }
         state->history.unsure = signals->motion.unknown > 0 ? state->history.unsure + 1 : 0;
-        advance_columns(state, at);
+        advance_load(state, at);
+        sh_column_filters_step(&signals->columns, &state->mean.columns, &signals->design, at->F,
+                               state->columns.size);
     } else {
         begin_filters(state, at, torque);
     }

@@ -77,6 +77,44 @@ void sh_state_variable_filter_add(sh_state_variable_filter *restrict sum,
     }
 }
 
+void sh_column_filters_start(sh_column_filters *filters, sh_column_filters *sum, int i, sh_real x,
+                             sh_real before)
+{
+    int k;
+
+    filters->input[i] = x;
+    sum->input[i] += x;
+    for (k = 0; k < 3; ++k) {
+        filters->behind[k][i] = x - before;
+        sum->behind[k][i] += x - before;
+    }
+}
+
+void sh_column_filters_step(sh_column_filters *restrict filters, sh_column_filters *restrict sum,
+                            const sh_filter_design *design, const sh_real *restrict x, int count)
+{
+    const sh_real k0 = design->keep[0], k1 = design->keep[1], k2 = design->keep[2];
+    sh_real(*behind)[SH_MAX_COLUMNS] = filters->behind;
+    int i;
+
+    for (i = 0; i < count; ++i) { /* as in `advance` */
+        const sh_real lag = (x[i] - filters->input[i]) * design->lag, d0 = behind[0][i] - lag,
+                      d1 = behind[1][i] - 2 * lag, d2 = behind[2][i] - 3 * lag;
+        const sh_real b0 = lag + k0 * d0, b1 = 2 * lag + k0 * d1 + k1 * d0,
+                      b2 = 3 * lag + k0 * d2 + k1 * d1 + k2 * d0;
+        const int rests = sh_fabs(b0) + sh_fabs(b1) + sh_fabs(b2) < SMALL;
+
+        filters->input[i] = x[i];
+        behind[0][i] = rests ? 0 : b0;
+        behind[1][i] = rests ? 0 : b1;
+        behind[2][i] = rests ? 0 : b2;
+        sum->input[i] += x[i];
+        sum->behind[0][i] += b0;
+        sum->behind[1][i] += b1;
+        sum->behind[2][i] += b2;
+    }
+}
+
 sh_real sh_state_variable_filter_output(const sh_state_variable_filter *filter)
 {
     return filter->input - filter->behind[2];

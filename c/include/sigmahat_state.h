@@ -140,9 +140,16 @@ enum {
     SH_FILTER_SIGN,    /* of the velocity */
     SH_FILTER_UNKNOWN, /* share of the sample in which the sign is unknown */
     SH_FILTER_NOMINAL, /* torque of the curve rls.eta_0 */
-    SH_FILTER_COLUMN,  /* first one of the columns */
-    SH_MAX_FILTERS = SH_FILTER_COLUMN + SH_MAX_COLUMNS
+    SH_FILTER_LOAD,    /* -|tau_e| s, friction that grows with the load */
+    SH_FILTERS
 };
+
+/* Filters of all columns, as sh_state_variable_filter. Each number stands side by side for all of them, so that
+ * compilers compute with several columns at once.
+ */
+typedef struct {
+    sh_real input[SH_MAX_COLUMNS], behind[3][SH_MAX_COLUMNS];
+} sh_column_filters;
 
 /* Signals and their filters, which all have the same design. */
 typedef struct {
@@ -152,7 +159,8 @@ typedef struct {
     int decimation; /* K: samples of a row */
     /* Variance of the mean of K samples if white noise of variance 1 is filtered by H [1], by s^2 H [1/s4]: */
     sh_real gain, gain_second;
-    sh_state_variable_filter filter[SH_MAX_FILTERS]; /* SH_FILTER_*, then those of the columns */
+    sh_state_variable_filter filter[SH_FILTERS];
+    sh_column_filters columns;
     sh_motion_sign motion;
     sh_real torque_before;   /* torque of the last sample [N.m] */
     sh_real theta_before[5]; /* the last positions, for differences [rad] */
@@ -172,10 +180,11 @@ typedef struct {
 
 /* Sums over the samples of the next row. */
 typedef struct {
-    int samples;   /* taken so far */
-    sh_real rough; /* of the noise of theta [rad2] */
-    sh_real moved; /* of the samples with which theta changed [1] */
-    sh_state_variable_filter filter[SH_MAX_FILTERS]; /* of the states of the filters */
+    int samples;                                 /* taken so far */
+    sh_real rough;                               /* of the noise of theta [rad2] */
+    sh_real moved;                               /* of the samples with which theta changed [1] */
+    sh_state_variable_filter filter[SH_FILTERS]; /* of the states of the filters */
+    sh_column_filters columns;                   /* K times as much */
 } sh_mean;
 
 /* The last row. The steps that take it are spread over the ticks until the next one. */
