@@ -31,6 +31,19 @@ static void begin(sh_regression_state *state)
     change->evidence = change->blocks = 0;
 }
 
+/* A block that contradicts hypothesis 1 while nothing contradicts hypothesis 0: the spring has changed behind t. Then t
+ * becomes the begin of this block, which hypothesis 0 has not taken yet.
+ */
+int sh_change_begins_anew(sh_regression_state *state, sh_real error)
+{
+    if (!(error > SH_CONTRADICTS * state->change.level) ||
+        state->change.evidence > SH_MAY_HAVE_CHANGED) {
+        return 0;
+    }
+    begin(state);
+    return 1;
+}
+
 /* The blocks are those of hypothesis 1, and so are the data: those of all samples contain some of behind t, which
  * contradict what they say about the motor. The next posterior follows. It has the prior twice, as these data
  * contain it; what the blocks say soon outweighs it.
@@ -62,14 +75,16 @@ static void watch_misfit(sh_change *change, sh_real misfit)
     change->usual_misfit += (sh_fmin(misfit, SH_SUDDEN_MISFIT * usual) - usual) / change->judged;
 }
 
-/* g = max(0, g + min(z_0 / l, 25) - 2 min(z_1 / l, 12.5) - 2), where z are squares of errors over their
- * variances and l >= 1 is their usual size: a misfit makes both hypotheses wrong all the time.
+/* g = max(0, g + min(z_0 / l, c) - 2 min(z_1 / l, 12.5) - 2), c = max(50 / m, 25), where z are squares of errors over
+ * their variances, l >= 1 is their usual size, and m >= 1 is the usual misfit: a misfit makes both hypotheses wrong all
+ * the time.
  */
 void sh_change_judge(sh_regression_state *state, const sh_parameters *p, sh_real before,
                      sh_real changed)
 {
     sh_change *change = &state->change;
     const sh_real level = change->level;
+    sh_real most;
 
     if (!(p->regression.memory > 0)) { /* switched off */
         return;
@@ -77,13 +92,14 @@ void sh_change_judge(sh_regression_state *state, const sh_parameters *p, sh_real
     change->judged = sh_fmin(change->judged + 1, SH_LEVEL_BLOCKS);
     change->level =
         sh_fmax(level + (sh_fmin(before, SH_LARGEST_LEVEL * level) - level) / change->judged, 1);
-    watch_misfit(change, sh_sqrt(sh_fmax(1, state->misfit)));
+    watch_misfit(change, sh_sqrt(state->misfit));
     if (state->blocks.count < SH_SHORTEST_PAST) {
         return;
     }
+    most = sh_fmax(SH_LARGEST_EVIDENCE / change->usual_misfit, SH_LEAST_LIMIT_OF_EVIDENCE);
     change->blocks += 1;
-    change->evidence = sh_fmax(change->evidence + sh_fmin(before / level, SH_LARGEST_EVIDENCE) -
-                                   2 * sh_fmin(changed / level, SH_LARGEST_EVIDENCE / 2) - 2,
+    change->evidence = sh_fmax(change->evidence + sh_fmin(before / level, most) -
+                                   2 * sh_fmin(changed / level, SH_CONTRADICTS) - 2,
                                0);
     if (change->evidence > SH_HAS_CHANGED * sh_sqrt(level) && change->following == 0) {
         adopt(state, p);
@@ -94,7 +110,7 @@ void sh_change_judge(sh_regression_state *state, const sh_parameters *p, sh_real
 
 sh_real sh_change_misfit(const sh_regression_state *state)
 {
-    return sh_sqrt(sh_fmax(1, state->misfit)) / state->change.usual_misfit;
+    return sh_sqrt(state->misfit) / state->change.usual_misfit;
 }
 
 int sh_change_is_likely(const sh_regression_state *state)

@@ -508,7 +508,7 @@ static sh_real entry_of(const sh_regression_state *state, const sh_parameters *p
     switch (state->columns.column[i].kind) {
     case SH_COLUMN_NOMINAL:
         return sh_state_variable_filter_output(&filter[SH_FILTER_NOMINAL]);
-    case SH_COLUMN_DAMPING: /* phi' l^j */
+    case SH_COLUMN_DAMPING: /* (phi l^j)' */
         return sh_state_variable_filter_first(&own, design);
     case SH_COLUMN_LOAD: /* -|tau_e| s through the filter */
         return as_if_smooth(&filter[SH_FILTER_LOAD], design);

@@ -160,7 +160,7 @@ static void report_coefficients(const sh_regression_state *state, const sh_param
                                 const sh_joint_point *at, const sh_combination *stiffness,
                                 sh_estimate *estimate)
 {
-    const sh_real K_0 = p->prior.tau_e / p->range.phi, sigma = sh_fabs(estimate->sigma);
+    const sh_real sigma = sh_fabs(estimate->sigma);
     sh_real sum[SH_COLUMN_KINDS] = {0}, turning;
 
     read_coefficients(state, p, at, sum, estimate);
@@ -173,11 +173,11 @@ static void report_coefficients(const sh_regression_state *state, const sh_param
     estimate->bias_hat = sum[SH_COLUMN_BIAS];
     estimate->damping_hat = sum[SH_COLUMN_DAMPING];
     estimate->load_friction_hat = sum[SH_COLUMN_LOAD] + sum[SH_COLUMN_DRIVE];
-    estimate->eccentric_hat = K_0 > 0 ? sh_limited(turning / K_0, SH_LARGEST_OUTPUT) : 0;
+    estimate->eccentric_hat = turning > 0 ? turning / sh_fmax(sigma, turning) : 0; /* at most 1 rad */
     estimate->delay_hat = sum[SH_COLUMN_DELAY];
     estimate->hysteresis_hat = sum[SH_COLUMN_HYSTERESIS];
     estimate->change_age = state->history.change_age;
-    estimate->misfit = sh_sqrt(sh_fmax(1, state->misfit));
+    estimate->misfit = sh_sqrt(state->misfit);
     estimate->doubt = doubt_of(state, p, sum, estimate);
 }
 
@@ -321,7 +321,7 @@ static void update_noise(sh_regression_state *state, const sh_parameters *p,
     sh_posterior_remove(now, N * now->weight, p->prior.B);
 }
 
-/* Takes a complete row, points 3 to 5 of the method. Returns 0 if its numbers are too large. */
+/* Takes a complete row, steps 3 to 5 of the tick. Returns 0 if its numbers are too large. */
 static int use_row(sh_regression_state *state, const sh_parameters *p)
 {
     const int size = state->columns.size;

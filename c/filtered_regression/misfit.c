@@ -70,13 +70,27 @@ static void count_block(sh_regression_state *state)
     }
 }
 
-/* Mean row sum h w x / sum h w. Each regression gives the square of the error of its prediction over the
- * variance of this error.
+/* Takes the mean row of a block [size: count]. Returns the square of the error of its prediction over the variance of
+ * this error [1].
  */
+static sh_real take_block(sh_information *a, const sh_real *mean, int count, sh_real w)
+{
+    sh_real x[SH_MAX_ROW] = {0}, error;
+    int i;
+
+    for (i = 0; i < count; ++i) {
+        x[i] = mean[i];
+    }
+    error = sh_information_take(a, x, w);
+    return sh_limited(error * sh_square(x[a->size + SH_RIGHT_Y]), SH_LARGE);
+}
+
+/* Mean row sum h w x / sum h w. The hypothesis of a change takes it first, as it may begin anew before this block. */
 void sh_blocks_end(sh_regression_state *state, const sh_parameters *p, int step)
 {
     sh_blocks *blocks = &state->blocks;
     const int count = state->columns.size + SH_RIGHT_SIDES;
+    sh_change *change = &state->change;
     sh_real mean[SH_MAX_ROW] = {0}, variance, w, error;
     int i;
 
@@ -91,17 +105,21 @@ void sh_blocks_end(sh_regression_state *state, const sh_parameters *p, int step)
         sh_blocks_interrupt(blocks); /* also if not a number */
         return;
     }
-    w = 1 / variance; /* an analyser loses where a pointer to one of the four could write */
-    error = step == 0   ? sh_information_take(&blocks->constant, mean, w)
-            : step == 1 ? sh_information_take(&blocks->drifting, mean, w)
-            : step == 2 ? sh_information_take(&blocks->recent, mean, w)
-                        : sh_information_take(&state->change.changed, mean, w);
-    error = sh_limited(error * sh_square(mean[count - SH_RIGHT_SIDES + SH_RIGHT_Y]), SH_LARGE);
-    if (step == 0 || (step == 1 && state->friction_drifts)) {
-        blocks->error = error;
-    } else if (step == 3) {
+    w = 1 / variance;
+    if (step == 0) {
+        change->error = take_block(&change->changed, mean, count, w);
+        if (sh_change_begins_anew(state, change->error)) {
+            change->error = take_block(&change->changed, mean, count, w);
+        }
+    } else if (step == 1) {
+        blocks->error = take_block(&blocks->constant, mean, count, w);
+    } else if (step == 2) {
+        error = take_block(&blocks->drifting, mean, count, w);
+        blocks->error = state->friction_drifts ? error : blocks->error;
+    } else {
+        (void)take_block(&blocks->recent, mean, count, w);
         count_block(state);
-        sh_change_judge(state, p, blocks->error, error);
+        sh_change_judge(state, p, blocks->error, change->error);
         sh_blocks_interrupt(blocks);
     }
 }
@@ -187,12 +205,12 @@ void sh_misfit_judge(sh_regression_state *state, const sh_parameters *p)
                    blocks->prior) /
         (N - parameters / 2);
     t = chance(N) / N;
-    state->misfit = sh_fmax(q, recent_misfit(state, p));
+    state->misfit = sh_fmax(1, sh_fmax(q, recent_misfit(state, p)));
     state->variance_factor = 1;
     if (!(p->regression.memory > 0)) { /* switched off */
         return;
     }
-    state->variance_factor = sh_fmax(1, state->misfit);
+    state->variance_factor = state->misfit;
     if (q > t) {
         state->variance_factor =
             sh_fmax(state->variance_factor, 1 + (q - t) * sh_fmax(1, N / SH_REPEATS));
@@ -251,10 +269,10 @@ void sh_friction_drift(sh_regression_state *state, sh_real time, int step)
 
 /* ---- forgetting, details 9 and 11 -------------------------------------------------------- */
 
-/* Forgets data of `time` [s]: faster while the misfit is over three times its usual value, but not faster than the
+/* Forgets data of so much time of motion [s]: faster while the misfit is over three times its usual value, but not faster than the
  * recent blocks; at least five times as fast if these agree by themselves, because then the joint has changed.
  */
-static void forget_data(sh_regression_state *state, const sh_parameters *p, sh_real time)
+static void forget_data(sh_regression_state *state, const sh_parameters *p, sh_real moving)
 {
     sh_blocks *blocks = &state->blocks;
     const sh_real N = blocks->recent_count;
@@ -262,7 +280,7 @@ static void forget_data(sh_regression_state *state, const sh_parameters *p, sh_r
     const sh_real sudden = sh_fmin(sh_change_misfit(state) / SH_FAR_FROM_USUAL, SH_RECENT);
     const sh_real faster = sh_fmax(sudden, has_changed ? SH_FASTER : 1);
     const sh_real memory = p->regression.memory / faster;
-    const sh_real factor = sh_exp(-time / memory);
+    const sh_real factor = sh_exp(-moving / memory);
 
     sh_information_forget(&state->data, factor, SH_LEAST_INFORMATION);
     forget_blocks(blocks, factor);

@@ -26,15 +26,15 @@ static sh_real friction_variance(const sh_regression_state *state, const sh_para
 {
     const sh_real u_f = sh_state_variable_filter_output(&state->signals.filter[SH_FILTER_UNKNOWN]);
     const int size = state->columns.size, C = size - (p->prior.B > 0 ? 2 : 1);
-    sh_real c[SH_MAX_COLUMNS] = {0}, tau_C;
+    sh_real c[SH_MAX_COLUMNS] = {0}, square; /* of the coefficient of tau_C */
 
     if (!(p->prior.tau_coulomb > 0) || C < 0 || !(sh_fabs(u_f) > 0)) {
         return 0;
     }
     c[C] = 1;
-    tau_C =
+    square =
         sh_square(state->beta[C]) + sh_posterior_variance(&state->posterior, p->prior.B, c, size);
-    return sh_square(p->motor.gamma * p->prior.tau_coulomb * u_f) * tau_C;
+    return sh_square(p->motor.gamma * p->prior.tau_coulomb * u_f) * square;
 }
 
 /* Mean square of the noise of theta over 0.1 s [rad2]; detail 4 */
@@ -58,7 +58,9 @@ static sh_real excess_of_noise(const sh_regression_state *state, const sh_parame
     return sh_fmax(1, (torque + inertial * state->history.rough) / rounded);
 }
 
-/* lambda = N_tau / (N_tau + N_theta + variance of the friction whose sign is unknown), detail 14 */
+/* lambda = N_tau / (N_tau + N_theta + variance of the friction whose sign is unknown), detail 14. Here N_theta has at
+ * least the noise of rounding.
+ */
 static sh_real share_of_torque(const sh_regression_state *state, const sh_parameters *p,
                                sh_real torque, sh_real friction)
 {
@@ -120,7 +122,7 @@ sh_real sh_noise_of_inertia(const sh_regression_state *state, const sh_parameter
     return sh_is_measured(p) ? 0 : sh_square(p->prior.B) * inertial_noise(signals, p) * V;
 }
 
-/* epsilon^2 > 25 (x' P x + N_tau + N_theta + gamma^2 (tau_C^2 + P_CC) u_f^2), where x contains only the
+/* epsilon^2 > 25 (x' P x + N_tau + (gamma^2 B)^2 G count^2/12 + gamma^2 (tau_C^2 + P_CC) u_f^2), where x contains only the
  * columns of the equation: a bias, or another thing that a joint may have, would hide a slow motion.
  */
 int sh_noise_contradicts_rest(sh_regression_state *state, const sh_parameters *p)

@@ -58,7 +58,7 @@ static void start_refit(sh_regression_state *state, const sh_parameters *p)
 {
     sh_refit *refit = &state->refit;
     const sh_real weight =
-        1 / (refit->trial == 0 ? state->variance_factor : sh_fmax(1, state->misfit));
+        1 / (refit->trial == 0 ? state->variance_factor : state->misfit);
     const int size = choose_columns(state, p, refit->posterior.column);
 
     sh_information_start(&refit->posterior.information, size, 1);
@@ -163,7 +163,7 @@ static void end_refit(sh_regression_state *state, const sh_parameters *p)
 }
 
 /* Std deviation of the relative error of viscous friction. */
-static void judge_friction(sh_regression_state *state, const sh_parameters *p)
+static void set_friction_std(sh_regression_state *state, const sh_parameters *p)
 {
     const sh_columns *columns = &state->columns;
     int i;
@@ -235,7 +235,7 @@ void sh_refit_advance(sh_regression_state *state, const sh_parameters *p)
         end_refit(state, p);
     } else if (step == 1) {
         sh_misfit_judge(state, p);
-        judge_friction(state, p);
+        set_friction_std(state, p);
         plan_refit(state, p);
     } else if (step < SH_REFIT_STEPS - 1) {
         if (refit->trial == 0) {

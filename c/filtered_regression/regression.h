@@ -28,8 +28,8 @@ typedef struct {
 typedef struct {
     sh_real R;       /* [(N.m)2] */
     sh_real lasting; /* factor in R by errors that last, >= 1 */
-    sh_real torque;  /* variance of y by noise of the torque [(N.m)2] */
-    sh_real share;   /* over the whole variance of y, 0..1 */
+    sh_real torque;  /* variance of the filtered y by noise of the torque [(N.m)2] */
+    sh_real share;   /* lambda of detail 14: over the whole variance of the filtered y, 0..1 */
 } sh_row_noise;
 
 /* ---- columns.c --------------------------------------------------------------------------- */
@@ -62,7 +62,7 @@ enum {
 /* What a column is. */
 enum {
     SH_IS_SPRING = 1,   /* a part of the torque of the spring */
-    SH_IS_CURVE = 2,    /* a part of its smooth curve, which has a slope */
+    SH_IS_CURVE = 2,    /* a part of its curve, which may drift */
     SH_IS_POWER = 4,    /* a power of the deformation: its coefficient is an eta */
     SH_IS_EQUATION = 8, /* a term of the equation of motion, not an additional effect */
     SH_IS_MOTOR = 16    /* 0 where the torque of the spring is measured or modelled */
@@ -254,6 +254,11 @@ void sh_forget(sh_regression_state *state, const sh_parameters *p, sh_real time)
 /* ---- change.c: detail 15 ----------------------------------------------------------------- */
 
 void sh_change_start(sh_regression_state *state);
+
+/* Whether the hypothesis of a change begins anew before the block that it has just taken, with a squared error over its
+ * variance [1]. Then the block must be taken again.
+ */
+int sh_change_begins_anew(sh_regression_state *state, sh_real error);
 
 /* Compares the hypotheses by the squares of their errors over the variances in a block: as before, and as
  * changed.

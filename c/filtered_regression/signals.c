@@ -5,7 +5,7 @@
 #include "state_variable_filter.h"
 
 /* W_c = sqrt(s_tau / (B |gamma| s_n)), s_n = count / sqrt(12), is where the noise of the torque and the
- * rounding of theta contribute equally to y; point 1 of the page.
+ * rounding of theta contribute equally to y; point 1.
  */
 sh_real sh_regression_bandwidth(const sh_parameters *p)
 {
@@ -128,7 +128,7 @@ static void advance_measured(sh_signals *signals, const sh_parameters *p, sh_rea
 }
 
 /* The friction by load acts against the motion. Before the stiffness is known, the load is taken from
- * the motor data: it is the last y (detail 13).
+ * the motor data: it is the last fitted y (detail 13).
  */
 static void advance_load(sh_regression_state *state, const sh_joint_point *at)
 {

@@ -203,7 +203,7 @@ typedef struct {
  */
 typedef struct {
     sh_real information; /* [1] */
-    sh_real gain;        /* to the right-hand side SH_RIGHT_GAIN [N.m] */
+    sh_real gain;        /* to the right-hand side SH_RIGHT_GAIN [1] */
 } sh_column_noise;
 
 /* Prior and data, which are weighted by the misfit, in the order of its own columns. */
@@ -223,7 +223,7 @@ typedef struct {
     sh_information recent;       /* of the prior and the last blocks */
     sh_real prior;               /* share of the prior that is left in the first two, 0..1 */
     sh_real count, recent_count; /* effective number of blocks [1] */
-    sh_real duration; /* of the blocks since data were last forgotten, as far as they count [s] */
+    sh_real duration; /* of the blocks since the last refit that was no trial, as far as they count [s] */
     sh_real length;   /* rows of a block */
     sh_real energy, energy_second; /* share of white noise that H, and s^2 H [1/s4], leave in a
                                       block */
@@ -246,6 +246,7 @@ typedef struct {
         judged; /* mean square of a block's error over its variance, and of how many blocks */
     sh_real usual_misfit; /* of the estimate, the mean over as many blocks [1] */
     sh_real evidence;     /* of the change [1] */
+    sh_real error; /* of the last block under this hypothesis: its square over its variance [1] */
 } sh_change;
 
 /* The next posterior while it is computed from all data, refit.c. */
@@ -253,10 +254,11 @@ typedef struct {
     sh_information frozen; /* copy of the data at the begin */
     sh_posterior posterior;
     int row;        /* next row of `frozen`; behind the last one: what a refit does at its end */
-    int trial;      /* group that the present refit tries; 0: it changes the estimate */
+    int trial;      /* group that the present refit tries, in its last steps of the next one; 0: it changes
+                       the estimate */
     int last_trial; /* group that was tried last */
     int used[SH_GROUPS]; /* 1: the group is used */
-    sh_real time;        /* since data were last forgotten [s] */
+    sh_real time;        /* since the last one that was no trial [s] */
     sh_real pause;       /* since the end of the last refit [s] */
 } sh_refit;
 

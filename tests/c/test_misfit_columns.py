@@ -54,8 +54,10 @@ def test_each_misfit_is_estimated(c: Library, output: str, way: int, gamma: floa
     assert found["confident"][-1]
 
 
-def test_an_eccentric_encoder_of_the_link_is_estimated(c: Library) -> None:
-    estimator = Estimator(c, SETTINGS)
+@pytest.mark.parametrize("scale", [1.0, 2.0])
+def test_an_eccentric_encoder_of_the_link_is_estimated(c: Library, scale: float) -> None:
+    """GIVEN priors of a spring that is as stiff, or half as stiff as expected."""
+    estimator = Estimator(c, {**SETTINGS, "prior.tau_e": scale * SETTINGS["prior.tau_e"]})
     found = estimator.run(MisfitJoint(eccentric=8e-4).measurements())
     std = math.hypot(accuracy(estimator, "SIN_Q"), accuracy(estimator, "COS_Q")) / STIFFNESS
     assert std < 4e-4

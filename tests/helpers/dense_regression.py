@@ -692,7 +692,7 @@ class Oracle:
         )
         longest = 3 * p["prior.delay"]
         self.delay = min(max(of["DELAY"], -longest), longest)
-        K_0 = p["prior.tau_e"] / p["range.phi"]
+        turning = math.hypot(of["SIN_Q"], of["COS_Q"])
         attenuation = self.rounding * self.live.weight * variance
 
         def std(variance: float, by_gain: float, value: float) -> float:
@@ -718,7 +718,7 @@ class Oracle:
             "bias_hat": of["BIAS"],
             "damping_hat": sum(damping),
             "load_friction_hat": of["LOAD"] + of["DRIVE"],
-            "eccentric_hat": math.hypot(of["SIN_Q"], of["COS_Q"]) / K_0 if K_0 else 0.0,
+            "eccentric_hat": turning / max(abs(self.sigma), turning) if turning else 0.0,
             "delay_hat": of["DELAY"],
             "hysteresis_hat": of["HYSTERESIS"],
         }
