@@ -173,7 +173,8 @@ static void report_coefficients(const sh_regression_state *state, const sh_param
     estimate->bias_hat = sum[SH_COLUMN_BIAS];
     estimate->damping_hat = sum[SH_COLUMN_DAMPING];
     estimate->load_friction_hat = sum[SH_COLUMN_LOAD] + sum[SH_COLUMN_DRIVE];
-    estimate->eccentric_hat = turning > 0 ? turning / sh_fmax(sigma, turning) : 0; /* at most 1 rad */
+    estimate->eccentric_hat =
+        turning > 0 ? turning / sh_fmax(sigma, turning) : 0; /* at most 1 rad */
     estimate->delay_hat = sum[SH_COLUMN_DELAY];
     estimate->hysteresis_hat = sum[SH_COLUMN_HYSTERESIS];
     estimate->change_age = state->history.change_age;

@@ -57,8 +57,7 @@ static int choose_columns(const sh_regression_state *state, const sh_parameters 
 static void start_refit(sh_regression_state *state, const sh_parameters *p)
 {
     sh_refit *refit = &state->refit;
-    const sh_real weight =
-        1 / (refit->trial == 0 ? state->variance_factor : state->misfit);
+    const sh_real weight = 1 / (refit->trial == 0 ? state->variance_factor : state->misfit);
     const int size = choose_columns(state, p, refit->posterior.column);
 
     sh_information_start(&refit->posterior.information, size, 1);
