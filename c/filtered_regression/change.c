@@ -59,7 +59,8 @@ static void adopt(sh_regression_state *state, const sh_parameters *p)
     state->data = change->changed;
     state->surplus = state->spread = state->rounding = 0;
     state->noise.information = state->noise.gain = 0;
-    sh_refit_restart(state, p);
+    state->refit.trial = 0;
+    sh_refit_begin(state, p);
     change->following = 1;
     change->usual_misfit *=
         SH_SUDDEN_MISFIT; /* what was learned of the motor may not fit as well */

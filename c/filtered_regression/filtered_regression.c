@@ -443,7 +443,8 @@ static int tick_filtered_regression(sh_estimator *estimator, const sh_parameters
     if (!are_acceptable(&at, y, &state->columns)) {
         return refuse(state, &before);
     }
-    settled = sh_signals_settle(&state->history, p->samplePeriod);
+    state->history.settling = sh_fmax(state->history.settling - p->samplePeriod, 0);
+    settled = !(state->history.settling > 0);
     complete = settled && take_sample(state, p); /* 2. Build a row of K samples. */
     if (complete && sh_noise_contradicts_rest(state, p)) {
         wait_until_settled(state);

@@ -1,6 +1,8 @@
 /* Misfit (point 7): what no column explains. Blocks of samples show it, and data that contradict the model are
  * forgotten.
  */
+#include <string.h>
+
 #include "constants.h"
 #include "regression.h"
 #include "state_variable_filter.h"
@@ -70,17 +72,14 @@ static void count_block(sh_regression_state *state)
     }
 }
 
-/* Takes the mean row of a block [size: count]. Returns the square of the error of its prediction over the variance of
+/* Takes the mean row of a block [size: SH_MAX_ROW]. Returns the square of the error of its prediction over the variance of
  * this error [1].
  */
-static sh_real take_block(sh_information *a, const sh_real *mean, int count, sh_real w)
+static sh_real take_block(sh_information *a, const sh_real *mean, sh_real w)
 {
-    sh_real x[SH_MAX_ROW] = {0}, error;
-    int i;
+    sh_real x[SH_MAX_ROW], error;
 
-    for (i = 0; i < count; ++i) {
-        x[i] = mean[i];
-    }
+    (void)memcpy(x, mean, sizeof x);
     error = sh_information_take(a, x, w);
     return sh_limited(error * sh_square(x[a->size + SH_RIGHT_Y]), SH_LARGE);
 }
@@ -107,17 +106,17 @@ void sh_blocks_end(sh_regression_state *state, const sh_parameters *p, int step)
     }
     w = 1 / variance;
     if (step == 0) {
-        change->error = take_block(&change->changed, mean, count, w);
+        change->error = take_block(&change->changed, mean, w);
         if (sh_change_begins_anew(state, change->error)) {
-            change->error = take_block(&change->changed, mean, count, w);
+            change->error = take_block(&change->changed, mean, w);
         }
     } else if (step == 1) {
-        blocks->error = take_block(&blocks->constant, mean, count, w);
+        blocks->error = take_block(&blocks->constant, mean, w);
     } else if (step == 2) {
-        error = take_block(&blocks->drifting, mean, count, w);
+        error = take_block(&blocks->drifting, mean, w);
         blocks->error = state->friction_drifts ? error : blocks->error;
     } else {
-        (void)take_block(&blocks->recent, mean, count, w);
+        (void)take_block(&blocks->recent, mean, w);
         count_block(state);
         sh_change_judge(state, p, blocks->error, change->error);
         sh_blocks_interrupt(blocks);

@@ -6,13 +6,9 @@
 
 void sh_motion_sign_start(sh_motion_sign *motion, sh_real position)
 {
-    motion->position = position;
-    motion->change = 0;
-    motion->direction = 0;
-    motion->given = 0;
-    motion->waiting = 0;
-    motion->sign = 0;
-    motion->unknown = 1;
+    const sh_motion_sign start = {.position = position, .unknown = 1};
+
+    *motion = start;
 }
 
 void sh_motion_sign_step(sh_motion_sign *motion, sh_real position, sh_real count, sh_real slow)

@@ -58,18 +58,6 @@ static sh_real excess_of_noise(const sh_regression_state *state, const sh_parame
     return sh_fmax(1, (torque + inertial * state->history.rough) / rounded);
 }
 
-/* lambda = N_tau / (N_tau + N_theta + variance of the friction whose sign is unknown), detail 14. Here N_theta has at
- * least the noise of rounding.
- */
-static sh_real share_of_torque(const sh_regression_state *state, const sh_parameters *p,
-                               sh_real torque, sh_real friction)
-{
-    const sh_real theta = sh_fmax(state->history.rough, sh_square(state->signals.count) / 12);
-    const sh_real sum = torque + inertial_noise(&state->signals, p) * theta + friction;
-
-    return sum > 0 ? torque / sum : 0;
-}
-
 /* K R = (sigma^2 (count^2 + count_q^2)/12 + (gamma s_tau)^2) (1 + 0.3 (X - 1))
  *       + 16/(3 w T) gamma^2 (tau_C^2 + P_CC) u_f^2
  *
@@ -91,14 +79,20 @@ sh_row_noise sh_noise_of_row(const sh_regression_state *state, const sh_paramete
     sh_row_noise noise = {0, 0, 0, 0};
 
     if (!sh_is_measured(p)) {
-        const sh_real friction = friction_variance(state, p);
+        const sh_real friction = friction_variance(state, p),
+                      theta = sh_fmax(history->rough, sh_square(state->signals.count) / 12);
+        sh_real whole;
 
         R = (rounding + sh_square(p->motor.gamma * p->noise.tau)) *
                 (1 + SH_EXCESS * (excess_of_noise(state, p) - 1)) +
             friction / ((sh_real)(3.0 / 16) * design->w * design->T);
         stays += friction * history->unsure;
         noise.torque = torque_noise(&state->signals, p);
-        noise.share = share_of_torque(state, p, noise.torque, friction);
+        /* lambda = N_tau / (N_tau + N_theta + variance of the friction whose sign is unknown), detail 14; N_theta has
+         * at least the noise of rounding.
+         */
+        whole = noise.torque + inertial_noise(&state->signals, p) * theta + friction;
+        noise.share = whole > 0 ? noise.torque / whole : 0;
     }
     noise.lasting = sh_square(1 + stays / R);
     noise.R = R * noise.lasting / (sh_real)state->signals.decimation;

@@ -54,7 +54,7 @@ static int choose_columns(const sh_regression_state *state, const sh_parameters 
 }
 
 /* The weight of the data is 1 / kappa^2. In a trial it is 1 / max(1, q). */
-static void start_refit(sh_regression_state *state, const sh_parameters *p)
+void sh_refit_begin(sh_regression_state *state, const sh_parameters *p)
 {
     sh_refit *refit = &state->refit;
     const sh_real weight = 1 / (refit->trial == 0 ? state->variance_factor : state->misfit);
@@ -73,7 +73,7 @@ void sh_refit_start(sh_regression_state *state, const sh_parameters *p)
 {
     state->variance_factor = state->misfit = 1;
     state->friction_std = p->prior.D_theta;
-    start_refit(state, p);
+    sh_refit_begin(state, p);
     state->posterior = state->refit.posterior;
 }
 
@@ -196,12 +196,6 @@ static void take_row(sh_regression_state *state)
     (void)sh_posterior_take(&refit->posterior, x, state->columns.size, w);
 }
 
-void sh_refit_restart(sh_regression_state *state, const sh_parameters *p)
-{
-    state->refit.trial = 0;
-    start_refit(state, p);
-}
-
 void sh_refit_take(sh_regression_state *state)
 {
     const sh_row *row = &state->row;
@@ -224,7 +218,7 @@ void sh_refit_advance(sh_regression_state *state, const sh_parameters *p)
 
     if (refit->row >= rows + SH_REFIT_STEPS) {
         if (refit->pause >= SH_REFIT_PAUSE * state->blocks.count * SH_BLOCK) {
-            start_refit(state, p);
+            sh_refit_begin(state, p);
         }
         return;
     }

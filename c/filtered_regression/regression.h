@@ -171,9 +171,6 @@ void sh_signals_start(sh_signals *signals, sh_history *history, const sh_paramet
 /* Lets the estimate wait until the filters have settled. */
 void sh_signals_unsettle(sh_signals *signals, sh_history *history);
 
-/* Lets time T [s] pass. Returns whether the filters have settled. */
-int sh_signals_settle(sh_history *history, sh_real T);
-
 /* Takes a sample into the history and into all filters. Sets where the joint is. */
 void sh_signals_take(sh_regression_state *state, const sh_parameters *p, const sh_measurement *z,
                      sh_real set_point, sh_joint_point *at);
@@ -277,8 +274,8 @@ int sh_change_is_likely(const sh_regression_state *state);
 /* Starts posterior and refit from the prior. */
 void sh_refit_start(sh_regression_state *state, const sh_parameters *p);
 
-/* Starts the refit again, not as a trial: the data contain a change of the spring. */
-void sh_refit_restart(sh_regression_state *state, const sh_parameters *p);
+/* Starts the refit again. Its trial stays. */
+void sh_refit_begin(sh_regression_state *state, const sh_parameters *p);
 
 /* Takes the last row, if a refit is under way. */
 void sh_refit_take(sh_regression_state *state);

@@ -56,12 +56,6 @@ void sh_signals_unsettle(sh_signals *signals, sh_history *history)
     history->settling = SH_FORGOTTEN / signals->design.w;
 }
 
-int sh_signals_settle(sh_history *history, sh_real T)
-{
-    history->settling = sh_fmax(history->settling - T, 0);
-    return !(history->settling > 0);
-}
-
 /* The deformation of a sample: its range, hysteresis, and how long it rests. */
 static void take_deformation(sh_history *history, const sh_signals *signals, const sh_parameters *p,
                              sh_real phi)
