@@ -102,9 +102,9 @@
  */
 #define SH_MAY_HAVE_CHANGED ((sh_real)20)
 #define SH_HAS_CHANGED ((sh_real)100)
-/* Largest evidence of one block, over the usual misfit, and with any misfit [1]: one block alone, which may be a blow, is
- * no change. With 25 throughout, a quarter fewer changes are found; with 50 throughout, two joints of 300 with a large
- * misfit had changes that were none.
+/* Largest evidence of one block, over the usual misfit, and with any misfit [1]: one block alone, which may be a blow,
+ * is no change. With 25 throughout, a sixth fewer changes are found; with 50 throughout, two joints of 300 with a
+ * large misfit had changes that were none.
  */
 #define SH_LARGEST_EVIDENCE ((sh_real)50)
 #define SH_LEAST_LIMIT_OF_EVIDENCE ((sh_real)25)

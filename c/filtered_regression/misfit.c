@@ -72,8 +72,8 @@ static void count_block(sh_regression_state *state)
     }
 }
 
-/* Takes the mean row of a block [size: SH_MAX_ROW]. Returns the square of the error of its prediction over the variance of
- * this error [1].
+/* Takes the mean row of a block [size: SH_MAX_ROW]. Returns the square of the error of its prediction over the variance
+ * of this error [1].
  */
 static sh_real take_block(sh_information *a, const sh_real *mean, sh_real w)
 {
@@ -268,8 +268,8 @@ void sh_friction_drift(sh_regression_state *state, sh_real time, int step)
 
 /* ---- forgetting, details 9 and 11 -------------------------------------------------------- */
 
-/* Forgets data of so much time of motion [s]: faster while the misfit is over three times its usual value, but not faster than the
- * recent blocks; at least five times as fast if these agree by themselves, because then the joint has changed.
+/* Forgets data of so much time of motion [s]: faster while the misfit is over three times its usual value, but not faster
+ * than the recent blocks; at least five times as fast if these agree by themselves, because then the joint has changed.
  */
 static void forget_data(sh_regression_state *state, const sh_parameters *p, sh_real moving)
 {

@@ -116,8 +116,8 @@ sh_real sh_noise_of_inertia(const sh_regression_state *state, const sh_parameter
     return sh_is_measured(p) ? 0 : sh_square(p->prior.B) * inertial_noise(signals, p) * V;
 }
 
-/* epsilon^2 > 25 (x' P x + N_tau + (gamma^2 B)^2 G count^2/12 + gamma^2 (tau_C^2 + P_CC) u_f^2), where x contains only the
- * columns of the equation: a bias, or another thing that a joint may have, would hide a slow motion.
+/* epsilon^2 > 25 (x' P x + N_tau + (gamma^2 B)^2 G count^2/12 + gamma^2 (tau_C^2 + P_CC) u_f^2), where x contains
+ * only the columns of the equation: a bias, or another thing that a joint may have, would hide a slow motion.
  */
 int sh_noise_contradicts_rest(sh_regression_state *state, const sh_parameters *p)
 {

@@ -50,7 +50,7 @@ def test_a_step_of_the_stiffness_is_followed(c: Library, frequency: float, facto
     later = joint.t >= AT
     assert np.all(age[~later] == -1)
     first = np.flatnonzero(age >= 0)[0]
-    assert joint.t[first] - AT < 5.0 / min(frequency, 1.0)
+    assert joint.t[first] - AT < 0.25
     assert age[first] == pytest.approx(0.0, abs=2 * T)
     assert found["doubt"][first] == CHANGE and not found["confident"][first]
     assert T * np.count_nonzero(found["confident"].astype(bool) & (error > 0.2)) < 1.0
@@ -61,13 +61,28 @@ def test_a_step_of_the_stiffness_is_followed(c: Library, frequency: float, facto
 
 @pytest.mark.parametrize("factor", [2.0, 0.5])
 def test_samples_of_the_changed_spring_do_not_spoil_the_motor(c: Library, factor: float) -> None:
-    """GIVEN other misfits, too, THEN the stiffness is right again three seconds after the step."""
+    """GIVEN other misfits, too, THEN the stiffness is right again a second after the step."""
     slow = Joint(duration=22.0, frequency=0.5, amplitude=1.6, stiffness=step(factor))
     joint = replace(slow, load_friction=0.03, delay=1e-3)
     found = Estimator(c, {**REGRESSION, "prior.B": 0.1}).run(joint.measurements())
     error = np.abs(found["sigma"] / joint.sigma - 1)
-    assert np.max(error[joint.t > AT + 3.0]) < 0.1
+    later = joint.t > AT + 1.0
+    assert np.max(error[later]) < 0.1 and np.all(found["confident"][later])
     assert found["B_hat"][-1] == pytest.approx(2.3e-5, rel=0.1)
+
+
+def test_a_hypothesis_that_began_before_the_change_begins_anew(c: Library) -> None:
+    """GIVEN noise that is a little evidence just before the change (of 20 seeds only this one).
+
+    The hypothesis has learned the old spring. It must not take the contradiction for another
+    motor.
+    """
+    joint = Joint(duration=22.0, frequency=0.5, amplitude=1.6, stiffness=step(2.0), seed=9)
+    joint = replace(joint, load_friction=0.03, delay=1e-3, hysteresis=0.1, noise=10**-2.2)
+    found = Estimator(c, {**REGRESSION, "prior.B": 0.1}).run(joint.measurements())
+    later, error = joint.t > AT, np.abs(found["sigma"] / joint.sigma - 1)
+    assert T * np.count_nonzero(later & ~found["confident"].astype(bool)) < 2.0
+    assert T * np.count_nonzero(later & (error > 0.1)) < 2.0
 
 
 @pytest.mark.parametrize("factor", [2.0, 0.5, 1.3])
