@@ -32,7 +32,8 @@ static void begin(sh_regression_state *state)
 }
 
 /* A block that contradicts hypothesis 1 while nothing contradicts hypothesis 0: the spring has changed behind t. Then t
- * becomes the begin of this block, which hypothesis 0 has not taken yet.
+ * becomes the begin of this block, which hypothesis 0 has not taken yet, and hypothesis 1 leaves out: in it, the spring
+ * changes.
  */
 int sh_change_begins_anew(sh_regression_state *state, sh_real error)
 {

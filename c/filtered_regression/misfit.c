@@ -106,10 +106,8 @@ void sh_blocks_end(sh_regression_state *state, const sh_parameters *p, int step)
     }
     w = 1 / variance;
     if (step == 0) {
-        change->error = take_block(&change->changed, mean, w);
-        if (sh_change_begins_anew(state, change->error)) {
-            change->error = take_block(&change->changed, mean, w);
-        }
+        error = take_block(&change->changed, mean, w);
+        change->error = sh_change_begins_anew(state, error) ? 0 : error;
     } else if (step == 1) {
         blocks->error = take_block(&blocks->constant, mean, w);
     } else if (step == 2) {

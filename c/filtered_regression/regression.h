@@ -253,7 +253,7 @@ void sh_forget(sh_regression_state *state, const sh_parameters *p, sh_real time)
 void sh_change_start(sh_regression_state *state);
 
 /* Whether the hypothesis of a change begins anew before the block that it has just taken, with a squared error over its
- * variance [1]. Then the block must be taken again.
+ * variance [1], and without this block.
  */
 int sh_change_begins_anew(sh_regression_state *state, sh_real error);
 
