@@ -266,8 +266,9 @@ void sh_friction_drift(sh_regression_state *state, sh_real time, int step)
 
 /* ---- forgetting, details 9 and 11 -------------------------------------------------------- */
 
-/* Forgets data of so much time of motion [s]: faster while the misfit is over three times its usual value, but not faster
- * than the recent blocks; at least five times as fast if these agree by themselves, because then the joint has changed.
+/* Forgets data of so much time of motion [s]: faster while the misfit is over three times its usual value, but not
+ * faster than the recent blocks; at least five times as fast if these agree by themselves, because then the joint has
+ * changed.
  */
 static void forget_data(sh_regression_state *state, const sh_parameters *p, sh_real moving)
 {

@@ -223,9 +223,8 @@ typedef struct {
     sh_information recent;       /* of the prior and the last blocks */
     sh_real prior;               /* share of the prior that is left in the first two, 0..1 */
     sh_real count, recent_count; /* effective number of blocks [1] */
-    sh_real
-        duration; /* of the blocks since the last refit that was no trial, as far as they count [s] */
-    sh_real length;                /* rows of a block */
+    sh_real duration; /* of the blocks since the last refit but trials, as far as they count [s] */
+    sh_real length;   /* rows of a block */
     sh_real energy, energy_second; /* share of white noise that H, and s^2 H [1/s4], leave in a
                                       block */
     /* The present block: */
@@ -255,11 +254,11 @@ typedef struct {
     sh_information frozen; /* copy of the data at the begin */
     sh_posterior posterior;
     int row;   /* next row of `frozen`; behind the last one: what a refit does at its end */
-    int trial; /* group that the present refit tries, in its last steps of the next one; 0: it changes
-                       the estimate */
+    int trial; /* group that the refit tries, in its last steps of the next one; 0: none, it changes
+                  the estimate */
     int last_trial;      /* group that was tried last */
     int used[SH_GROUPS]; /* 1: the group is used */
-    sh_real time;        /* since the last one that was no trial [s] */
+    sh_real time;        /* since the last refit but trials [s] */
     sh_real pause;       /* since the end of the last refit [s] */
 } sh_refit;
 
