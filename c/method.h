@@ -17,10 +17,10 @@
 #define SH_TEXT_OF(macro) SH_TEXT(macro)
 
 typedef struct {
-    /* Largest deformation for which the parameters are made [rad]; may be infinite. */
+    /* Largest deformation that the parameters allow [rad]; may be infinite. */
     sh_real (*largest_deformation)(const sh_parameters *p);
 
-    /* Checks what this method alone requires of the parameters; all are in their ranges. Returns 0,
+    /* Checks the conditions that only this method sets. Each parameter is in its range. Returns 0,
      * or 1 after sh_violates.
      */
     int (*check)(const sh_parameters *p, sh_violation *violation);

@@ -395,7 +395,9 @@ static void take_steps(sh_regression_state *state, const sh_parameters *p)
     }
 }
 
-/* Waits until the filters have settled. The present block would have rows of before and after it. */
+/* Waits until the filters have settled. A block that is not full is dropped: it would contain rows from both
+ * sides of the gap.
+ */
 static void wait_until_settled(sh_regression_state *state)
 {
     sh_signals_unsettle(&state->signals, &state->history);

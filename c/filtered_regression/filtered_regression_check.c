@@ -34,7 +34,7 @@ static int are_columns(const sh_columns *columns, const sh_parameters *p)
     return 1;
 }
 
-/* The data of all samples have every column. */
+/* Whether each system of normal equations has as many unknowns as there are columns. */
 static int are_data(const sh_regression_state *state)
 {
     const sh_blocks *blocks = &state->blocks;

@@ -277,7 +277,7 @@ void sh_refit_start(sh_regression_state *state, const sh_parameters *p);
 /* Starts the refit again. Its trial stays. */
 void sh_refit_begin(sh_regression_state *state, const sh_parameters *p);
 
-/* Takes the last row, if a refit is under way. */
+/* Adds the newest row to the sums of the refit, if a refit is running. */
 void sh_refit_take(sh_regression_state *state);
 
 /* Takes one row of the data of all samples, or does the next step at the end of a refit. */

@@ -198,8 +198,8 @@ typedef struct {
     sh_real epsilon, rho;  /* error of the prediction [N.m], its variance over 1/w [1] */
 } sh_row;
 
-/* The noise of the motor's torque is also in the column that it makes. This is what it adds to the equation of
- * that column's coefficient.
+/* The noise of the motor's torque is also in the column that is computed from this torque. These are the terms that
+ * the noise adds to the normal equation of the coefficient of that column.
  */
 typedef struct {
     sh_real information; /* [1] */

@@ -48,6 +48,8 @@ def test_every_state_of_a_run_passes(c: Library, method: int, joint: dict[str, A
         assert passes(e)
 
 
+CONFIGURED = {"method": FILTERED_REGRESSION, "rls.n": 3, "prior.B": 0.1}
+SIZE = 33  # number of columns with these parameters
 INTEGERS_OF_FILTERED_REGRESSION = [
     *("modality", "friction_drifts", "stiffness_known", "signals.begun", "data.size"),
     *("columns.size", "columns.spring", "columns.has_nominal"),
@@ -82,9 +84,31 @@ def damage(part: Any, member: str, place: int, value: int) -> None:
 )
 def test_a_damaged_member_is_found(c: Library, member: str, place: int, value: int) -> None:
     """An integer of a state of FilteredRegression is out of all that it can be."""
-    e = Estimator(c, {"method": FILTERED_REGRESSION, "rls.n": 3, "prior.B": 0.1})
+    e = Estimator(c, CONFIGURED)
     damage(e.state.method.regression, member, place, value)
     assert not passes(e)
+
+
+@pytest.mark.parametrize(
+    ("member", "least", "largest"),
+    [
+        ("modality", 1, 3),
+        *((flag, 0, 1) for flag in ("friction_drifts", "stiffness_known", "signals.begun")),
+        *((flag, 0, 1) for flag in ("refit.used", "change.following")),
+        *((group, 0, 6) for group in ("refit.trial", "refit.last_trial")),
+        *((sums, SIZE, SIZE) for sums in ("data.size", "refit.frozen.size", "change.changed.size")),
+        *((f"blocks.{sums}.size", SIZE, SIZE) for sums in ("constant", "drifting", "recent")),
+        *((f"{one}.information.size", 1, SIZE) for one in ("posterior", "refit.posterior")),
+        *((f"{one}.column", 0, SIZE - 1) for one in ("posterior", "refit.posterior")),
+        ("columns.size", SIZE, SIZE),
+        ("columns.has_nominal", 0, 0),
+    ],
+)
+def test_the_limits_are_exact(c: Library, member: str, least: int, largest: int) -> None:
+    for value in (least - 1, least, largest, largest + 1):
+        e = Estimator(c, CONFIGURED)
+        damage(e.state.method.regression, member, 1, value)
+        assert passes(e) == (least <= value <= largest)
 
 
 @settings(deadline=None)

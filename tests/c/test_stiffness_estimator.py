@@ -39,6 +39,15 @@ def test_defaults_are_those_of_the_paper_and_in_their_ranges(c: Library) -> None
     assert all(entry == 0 for row in p.rls.eta_0 for entry in row)
 
 
+@pytest.mark.parametrize("method", [1, 2])
+def test_before_the_first_sample_the_coefficients_are_eta_0(c: Library, method: int) -> None:
+    eta_0 = np.zeros((8, 5))
+    eta_0[:3, :2] = [[1.0, 2.0], [3.0, 4.0], [5.0, 6.0]]
+    given = {"method": method, "rls.n": 3, "rls.m": 2, "rls.eta_0": eta_0.tolist()}
+    estimator = Estimator(c, given)
+    assert [list(row) for row in estimator.estimate.eta] == eta_0.tolist()
+
+
 @pytest.mark.parametrize(
     ("method", "name", "inside", "outside"),
     [

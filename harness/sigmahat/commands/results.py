@@ -81,7 +81,7 @@ def estimate(
         lines = ["\n".join(map(str.rstrip, aligned(rows, left=(0, 1))))]
         wrong = [name for name, (_, checked) in found.items() if checked.is_wrong]
         lines += [f"Something is likely wrong: sigmahat check {log} --joint {n}" for n in wrong]
-        text = f"{where}/JOINT, the table above in joints.csv"
+        text = f"{where}, in a folder for each joint; joints.csv there has the table above"
         common.answer("\n\n".join([*lines, text]), {"joints": values})
 
 
@@ -199,7 +199,7 @@ def export(sheet: Path, to: str, out: Path | None, force: bool) -> None:
         common.refuse_to_overwrite(path, force, "--out")
         if to in _MODELS:
             write_model(contents, to, path)
-            text = f"The joint as two hinges is in {path.resolve()}; its link is a placeholder"
+            text = f"{path.resolve()} has the joint as two hinges; replace the placeholder of its link"
         else:
             parameter_file.write(contents, installed("StiffnessEstimator"), to, path)
             text = f"{len(contents.start_values)} start values are in {path.resolve()}"

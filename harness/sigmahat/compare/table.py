@@ -22,9 +22,9 @@ _IN_FILE = {
 
 
 def group(row: Row) -> str:
-    """The heading that a row stands under."""
+    """Heading of the group of rows that this row belongs to."""
     if not row.case.motor_errors:
-        return "motor data exact, and known to be"
+        return "motor data exact, and taken as exact"
     if row.joint.lever_arm is None:
         return "antagonistic pair" if len(row.joint.parts) > 1 else "single transmission"
     friction = f", Coulomb friction {row.joint.coulomb:g} N.m" if row.joint.coulomb else ""

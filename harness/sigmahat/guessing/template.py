@@ -231,7 +231,7 @@ def period_of(guess: JointGuess) -> str:
 
 def _parameters(guess: JointGuess) -> Table:
     table, ports = tomlkit.table(), guess.ports
-    _comment(table, "of StiffnessEstimator.fmu, by their names; others keep their start values")
+    _comment(table, "parameters of StiffnessEstimator.fmu; all others keep their start values")
     if guess.time is None:
         _add(table, "samplePeriod", 0, "[s] FILL IN: time between two rows; the log has no times")
     else:
@@ -272,12 +272,12 @@ def _add_ranges(table: Table, guess: JointGuess) -> None:
     q, sensor = guess.ports.get("q"), guess.ports["tau_e_sensor"]
     if q is not None and q.unit in TURN and "theta" not in guess.ports:
         in_rad = 2 * math.pi / TURN[q.unit]
-        _add(table, "range.phi", _largest(q) * in_rad, "[rad] largest deformation, with some room")
+        _add(table, "range.phi", _largest(q) * in_rad, "[rad] largest deformation, with a margin")
     else:
         _hint(table, "range.phi = 0.3   # [rad] CHECK: the largest deformation")
     if sensor.unit in _TORQUES:
         largest = _largest(sensor) * _TORQUES[sensor.unit]
-        _add(table, "prior.tau_e", largest, "[N.m] largest torque, with some room")
+        _add(table, "prior.tau_e", largest, "[N.m] largest torque, with a margin")
     else:
         _hint(table, "prior.tau_e = 45   # [N.m] CHECK: the largest torque")
     _hint(

@@ -52,7 +52,7 @@ _CONTRADICTED = (
     "torque_constant, unit and gear_ratio of tau, and motor.gamma, or remove motor.B"
 )
 _HIDDEN = (
-    "the deformation differs from the acceleration of the motor by less than the rounding of the "
+    "the deformation is proportional to the acceleration of the motor, but for the rounding of the "
     "encoders: the log cannot tell the inertia of the motor from the inertia of the load; record "
     "more frequencies, or give motor.B and prior.B"
 )

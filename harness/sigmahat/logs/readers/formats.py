@@ -6,7 +6,11 @@ from sigmahat.logs.log import Log, LogError, check_columns
 
 _PACKED = (
     (b"\x1f\x8b", "compressed with gzip", "unpack it: gunzip --keep {}"),
-    (b"PK\x03\x04", "an Excel workbook or a ZIP archive", "save the sheet as CSV, or unpack it"),
+    (
+        b"PK\x03\x04",
+        "an Excel workbook or a ZIP archive",
+        "save a workbook as CSV; unpack an archive",
+    ),
     (b"\xff\xfe", "text in UTF-16", "convert it: iconv -f UTF-16 -t UTF-8 {}"),
     (b"BZh", "compressed with bzip2", "unpack it: bunzip2 --keep {}"),
     (b"\x28\xb5\x2f\xfd", "compressed with Zstandard", "unpack it: unzstd {}"),
