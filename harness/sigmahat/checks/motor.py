@@ -14,7 +14,7 @@ from sigmahat.checks.view import View
 from sigmahat.identification import regression
 from sigmahat.identification.coherence import coherent_range
 from sigmahat.identification.noise import TorqueNoise, is_only_noise
-from sigmahat.identification.regression import MOTOR, Equations, Fit, Form, extra, fit
+from sigmahat.identification.regression import MOTOR, Equations, Fit, Form, Stribeck, extra, fit
 from sigmahat.identification.spring import Spring
 from sigmahat.logs.log import Array
 
@@ -128,7 +128,7 @@ def variants(form: Form) -> list[Form]:
     return [
         replace(form, f_0=0.6 * form.f_0),
         replace(form, load_friction=True),
-        replace(form, stribeck_velocity=0.1),
+        replace(form, stribeck=(Stribeck(0.1, 2.0),)),
     ]
 
 
@@ -172,7 +172,7 @@ def _equations(seen: View, form: Form) -> Equations:
     every = regression.equations(seen.pieces, seen.T, seen.gamma, form)
     if not seen.has_sensor:
         return every
-    return every.only([name for name in every.names if name not in MOTOR])
+    return every.without(MOTOR)
 
 
 def moved(signal: Array, ticks: float) -> Array:

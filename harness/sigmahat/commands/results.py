@@ -199,7 +199,7 @@ def export(sheet: Path, to: str, out: Path | None, force: bool) -> None:
         common.refuse_to_overwrite(path, force, "--out")
         if to in _MODELS:
             write_model(contents, to, path)
-            text = f"{path.resolve()} has the joint as two hinges; replace the placeholder of its link"
+            text = f"{path.resolve()} has the joint, as two hinges; its link is a placeholder"
         else:
             parameter_file.write(contents, installed("StiffnessEstimator"), to, path)
             text = f"{len(contents.start_values)} start values are in {path.resolve()}"

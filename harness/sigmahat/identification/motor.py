@@ -1,9 +1,7 @@
 """Motor data with their intervals, from several fits of the motor equation."""
 
 import math
-import os
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,9 +11,11 @@ from sigmahat.identification.regression import (
     COULOMB_VELOCITY,
     MOTOR,
     WIDEST,
+    Equations,
     Fit,
     Form,
     Signals,
+    Stribeck,
     choose,
     equations,
     fit,
@@ -34,7 +34,9 @@ With 6, the interval of the stiffness is a quarter wider, and with 3 it holds fe
 _SAMPLING = {"B": 0.015, "tau_coulomb": 0.015, "D_theta": 0.001}
 """Relative error without any noise, at a period of 1 ms: reversals fall between samples."""
 _OF_COVERED = 0.05  # largest half width of a known zero, over the covered deformation
-_STRIBECK = (0.03, 0.1, 0.3)  # [rad/s] over which the friction of slow motion decreases
+_STRIBECK = tuple(
+    Stribeck(v, delta) for v in (0.01, 0.02, 0.04, 0.08, 0.16, 0.32) for delta in (1.0, 2.0)
+)
 _ENDS = (0.0, -1.96, 1.96)  # value and ends of a known inertia, in standard deviations
 _FAR = 5.0  # standard deviations of a known B that no error of a data sheet exceeds
 _ANOTHER = 0.5  # relative error of B below which another scale of the torque is not likely
@@ -149,23 +151,14 @@ class Variants:
     frictions: Sequence[Fit]  # with other forms of friction
 
 
-def _frictions(form: Form) -> list[Form]:
-    """All forms of friction, the one of the plain equation first."""
-    plain = replace(
-        form, coulomb_velocity=COULOMB_VELOCITY, load_friction=False, stribeck_velocity=0.0
-    )
+def _frictions(plain: Form) -> list[Form]:
+    """All other forms of friction than that of the plain equation."""
     load = replace(plain, load_friction=True)
     return [
-        plain,
         replace(plain, coulomb_velocity=COULOMB_VELOCITY / 4),
         replace(plain, coulomb_velocity=COULOMB_VELOCITY * 2),
         load,
-        *(
-            replace(each, stribeck_velocity=v, stribeck_exponent=delta)
-            for each in (plain, load)
-            for v in _STRIBECK
-            for delta in (1.0, 2.0)
-        ),
+        *(replace(each, stribeck=(one,)) for each in (plain, load) for one in _STRIBECK),
     ]
 
 
@@ -178,10 +171,19 @@ def _variants(
 
     The second ones are with B as known, if it is.
     """
+    sensor = pieces[0].tau_e is not None
+    widest = replace(form, load_friction=True, stribeck=_STRIBECK, delay=True)
+    whole, names = equations(pieces, T, gamma, widest), set(widest.names(sensor))
+
+    def system_of(each: Form) -> Equations:
+        """A part of the columns of `widest`, if no filter and no velocity differs."""
+        if replace(each, load_friction=True, stribeck=_STRIBECK, delay=True) == widest:
+            return whole.without(names.difference(each.names(sensor)))
+        return equations(pieces, T, gamma, each)
 
     def fits_of(each: Form) -> list[Fit]:
         """With B as unknown, then as known and at both ends of its interval."""
-        system = equations(pieces, T, gamma, each)
+        system = system_of(each)
         ends = [] if inertia is None else [inertia.value * (1 + k * inertia.std) for k in _ENDS]
         return [fit(system), *(fit(system.known("B", B)) for B in ends)]
 
@@ -189,9 +191,7 @@ def _variants(
     every = {each: fits_of(each) for each in (form, late)}
     plain, other = (late, form) if is_worse(every[form][0], every[late][0]) else (form, late)
     del every[other]
-    frictions = _frictions(plain)[1:]
-    with ThreadPoolExecutor(os.cpu_count()) as threads:  # the time is spent in numpy and scipy
-        every |= zip(frictions, threads.map(fits_of, frictions), strict=True)
+    every |= {each: fits_of(each) for each in _frictions(plain)}
     errors = {each: float(np.sum(fits[0].squares)) for each, fits in every.items()}
     best = min(errors, key=lambda each: np.nan_to_num(errors[each], nan=np.inf))
     chosen = best if is_worse(every[plain][0], every[best][0]) else plain

@@ -21,8 +21,9 @@ the number of samples, and each fit takes no time beside the filters.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -66,6 +67,14 @@ class Signals:
         return _part(self, slice(None, number))
 
 
+class Stribeck(NamedTuple):
+    """Friction that falls with the velocity as exp(-|theta'/v|^delta) (Armstrong-Helouvry, Dupont
+    and Canudas de Wit, Automatica 30:1083-1138, 1994)."""
+
+    velocity: float  # v [rad/s], > 0
+    exponent: float  # delta, usually 1 or 2
+
+
 @dataclass(frozen=True)
 class Form:
     """What the equations contain, and the filters."""
@@ -78,11 +87,7 @@ class Form:
     coulomb_velocity: float = COULOMB_VELOCITY  # v_s [rad/s]
     load_friction: bool = False
     """Whether there is friction that is proportional to the magnitude of the deformation."""
-    stribeck_velocity: float = 0.0
-    """v, if friction is larger in slow motion [rad/s]; 0 if it is not. The additional part falls as
-    exp(-|theta'/v|^delta) (Armstrong-Helouvry, Dupont and Canudas de Wit, Automatica 30:1083-1138,
-    1994)."""
-    stribeck_exponent: float = 2.0  # delta, usually 1 or 2
+    stribeck: tuple[Stribeck, ...] = ()  # additional friction in slow motion
     delay: bool = False  # whether the torque may be late: tau(t - delay) = tau(t) - delay tau'(t)
 
     def names(self, sensor: bool) -> list[str]:
@@ -91,7 +96,7 @@ class Form:
         return [
             *MOTOR,
             *(["load"] if self.load_friction else []),
-            *(["stribeck"] if self.stribeck_velocity else []),
+            *(f"stribeck[{v:g},{delta:g}]" for v, delta in self.stribeck),
             *(["delay"] if self.delay else []),
             *([CONSTANT] if has_constant else []),
             *(["gain"] if sensor else eta(self.n, self.m)),
@@ -128,12 +133,15 @@ class Equations:
         ZX, Zy = self.ZX[:, kept[:, None], kept], self.Zy[:, kept]
         return replace(self, ZX=ZX, Zy=Zy, R=self.R[:, :, [*kept, -1]], names=list(names))
 
+    def without(self, names: Collection[str]) -> Equations:
+        """The same equations without some of the columns."""
+        return self.only([name for name in self.names if name not in names])
+
     def known(self, name: str, value: float) -> Equations:
         """The same equations without a column whose coefficient is known."""
         i, R = self.names.index(name), self.R.copy()
         R[:, :, -1] -= value * R[:, :, i]
-        rest = replace(self, Zy=self.Zy - value * self.ZX[:, :, i], R=R)
-        return rest.only([each for each in self.names if each != name])
+        return replace(self, Zy=self.Zy - value * self.ZX[:, :, i], R=R).without([name])
 
     def in_parts(self, parts: int) -> Equations:
         """The same equations in fewer, longer blocks."""
@@ -291,9 +299,8 @@ def _half(
     raw = [tau if s.tau_e is None else s.tau_e[kept] / gamma, friction]
     if form.load_friction:
         raw.append(np.abs(s.phi[kept] if s.tau_e is None else s.tau_e[kept]) * friction)
-    if form.stribeck_velocity:
-        speed = np.abs(_first(low_pass(s.theta, form.wide, h / 2), h / 2))[kept]
-        raw.append(np.exp(-((speed / form.stribeck_velocity) ** form.stribeck_exponent)) * friction)
+    speed = np.abs(_first(low_pass(s.theta, form.wide, h / 2), h / 2))[kept]
+    raw += [np.exp(-((speed / v) ** delta)) * friction for v, delta in form.stribeck]
     if form.delay:
         raw.append(np.gradient(tau, h))
     if CONSTANT in form.names(sensor):

@@ -70,8 +70,9 @@ MSREP_IN_WORDS = "MSREP: mean square of the relative error; 1 % is an RMS error 
 def mse(sigma: ArrayLike, estimate: ArrayLike) -> float:
     """Mean square error, (35), in the square of the unit of sigma.
 
-    Both arguments have the shape (p + 1,), p >= 1: samples k = 0..p. The sum of the p + 1
-    squares is divided by p, as it is printed in the paper. Raises ValueError for other shapes and values that are not finite.
+    Both arguments have the shape (p + 1,), p >= 1: samples k = 0..p. As the paper prints it, the
+    sum of the p + 1 squares is divided by p. Raises ValueError for other shapes and values that
+    are not finite.
     """
     true, estimated = _equal_shapes(sigma, estimate)
     return float(np.sum((true - estimated) ** 2) / (len(true) - 1))
