@@ -13,6 +13,7 @@ from typing import Any
 from xml.etree.ElementTree import Element
 
 from sigmahat.export import templates
+from sigmahat.files.templates import environment
 
 _ICONS = {
     2: ("model.png", "documentation/icon.svg"),
@@ -28,7 +29,7 @@ def write(template: Path, out: Path, version: str) -> None:
     """
     root = templates.render(template, version)
     (experiment,) = root.findall("DefaultExperiment")
-    page = templates.environment(template.parent / "documentation").get_template("page.html")
+    page = environment(template.parent / "documentation").get_template("page.html")
     for fmi, icons in _ICONS.items():
         index = out / f"fmi{fmi}" / "documentation" / "index.html"
         for icon in icons:

@@ -9,7 +9,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from sigmahat.export import archive
-from sigmahat.export.templates import environment
+from sigmahat.files.templates import environment
 from sigmahat.fmi.instance import Fmu, Value
 from sigmahat.paper.scenarios import scenario
 from sigmahat.runs.scenario import Scenario, Sine

@@ -11,17 +11,9 @@ from pathlib import Path
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
 
-import jinja2
+from sigmahat.files.templates import environment
 
 UNITS = Path(__file__).with_name("units.xml")  # all units that a variable may have
-
-
-def environment(*folders: Path, autoescape: bool = True) -> jinja2.Environment:
-    """Jinja2 for the templates in these folders; a name without a value is an error."""
-    loader = jinja2.FileSystemLoader(folders)
-    return jinja2.Environment(
-        loader=loader, undefined=jinja2.StrictUndefined, autoescape=autoescape
-    )
 
 
 def render(template: Path, version: str) -> Element:

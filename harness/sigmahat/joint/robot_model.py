@@ -5,25 +5,23 @@ hinge is the flexibility, with the deformation phi as its angle, and -tau_e as t
 spring.
 
 Each number has all of its digits. A comment has the 95 % interval of the number. If the format
-allows, the interval is also a range for domain randomization.
+allows, the interval is also a range for domain randomization. The formats are templates in
+``templates/``.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-from lxml import etree
 from numpy.polynomial import Polynomial
 
 from sigmahat.files.output import write_whole
+from sigmahat.files.templates import environment
 from sigmahat.joint.sheet import Parameter, Sheet, one_line, origin
 from sigmahat.joint.stored import Range
 
-_DRAKE = "http://drake.mit.edu"
-_PLACEHOLDER = " A placeholder: put your own link here. "
-_ROTOR = 1e-6  # inertia of a rotor whose inertia is written elsewhere [kg.m2]
+_ROTOR = 1e-6  # least inertia of a link; of a rotor whose inertia is written elsewhere [kg.m2]
 _EXACT = 1e-3  # error of a polynomial, relative to its largest torque, that is worth a comment
 _MISSING = {
     "mjcf": "",
@@ -179,18 +177,28 @@ def _absent(sheet: Sheet, reach: Range) -> Iterator[str]:
 
 
 def write_model(sheet: Sheet, kind: str, path: Path) -> None:
-    """Writes the joint of a sheet as a model; kind is a key of MODELS.
+    """Writes the joint of a sheet as a model: mjcf, sdf, urdf or drake.
 
     Raises ValueError for a sheet that shows no stiffness.
     """
     name = one_line(path.name.partition(".")[0]).replace(" ", "_")
     hinges = two_hinges(sheet, degree=3 if kind == "mjcf" else 1)
-    root = MODELS[kind](hinges, name)
-    for line in [*_head(hinges, name), _MISSING[kind], *origin(sheet)]:
-        if line:
-            root.addprevious(etree.Comment(f" {line} "))
-    text = etree.tostring(root.getroottree(), encoding="unicode", pretty_print=True)
-    write_whole(f'<?xml version="1.0"?>\n{text}', path)
+    template = "sdf" if kind == "drake" else kind
+    model = (
+        environment(Path(__file__).parent / "templates")
+        .get_template(f"{template}.xml")
+        .render(
+            name=name,
+            hinges=hinges,
+            spring=hinges.spring,
+            rotor=_ROTOR,
+            inertia=max(hinges.armature.value, _ROTOR),
+            drake=kind == "drake",
+        )
+    )
+    lines = [line for line in (*_head(hinges, name), _MISSING[kind], *origin(sheet)) if line]
+    comments = [f"<!-- {line} -->" for line in lines]
+    write_whole("\n".join(['<?xml version="1.0"?>', *comments, model, ""]), path)
 
 
 def _head(hinges: TwoHinges, name: str) -> Iterator[str]:
@@ -208,140 +216,3 @@ def _head(hinges: TwoHinges, name: str) -> Iterator[str]:
         yield f"This spring differs from the data by up to {100 * spring.error:.2g} %."
     if hinges.absent:
         yield f"Not in this model: {', '.join(hinges.absent)}."
-
-
-def _mjcf(hinges: TwoHinges, name: str) -> Any:
-    root = etree.Element("mujoco", model=name)
-    _add(root, "compiler", angle="radian", autolimits="true")
-    _add(root, "option", timestep="0.001", integrator="implicitfast")
-    rotor = _add(_add(root, "worldbody"), "body", name=f"{name}_rotor")
-    small = f"{_ROTOR} {_ROTOR} {_ROTOR}"
-    _add(rotor, "inertial", pos="0 0 0", mass="0.001", diaginertia=small)
-    motor = {"armature": hinges.armature, "damping": hinges.damping}
-    motor["frictionloss"] = hinges.frictionloss
-    _add(rotor, "joint", name=f"{name}_motor", axis="0 0 1", **_values(motor))
-    link = _add(rotor, "body", name=f"{name}_link")
-    link.append(etree.Comment(_PLACEHOLDER))
-    _add(link, "inertial", pos="0.1 0 0", mass="1", diaginertia="0.01 0.01 0.01")
-    _add(
-        link,
-        "joint",
-        name=f"{name}_flexibility",
-        axis="0 0 1",
-        stiffness=" ".join(map(repr, hinges.spring.stiffness)),
-        springref=repr(hinges.spring.reference),
-        **_values({"damping": hinges.spring_damping}),
-    )
-    actuator = _add(root, "actuator")
-    actuator.append(
-        etree.Comment(" Its control is the torque of the motor on its own axis [N.m]. ")
-    )
-    gear = repr(hinges.gear_ratio)
-    _add(actuator, "motor", name=f"{name}_motor", joint=f"{name}_motor", gear=gear)
-    custom = _add(root, "custom")
-    custom.append(etree.Comment(" Ranges of 95 %, for domain randomization. "))
-    for title, each in hinges.parameters(name):
-        if each.interval is not None:
-            _add(custom, "numeric", name=title, data=" ".join(map(repr, each.interval)))
-    return root
-
-
-def _sdf(hinges: TwoHinges, name: str) -> Any:
-    return _described(hinges, name, {}, hinges.armature.value)
-
-
-def _drake(hinges: TwoHinges, name: str) -> Any:
-    root = _described(hinges, name, {"drake": _DRAKE}, _ROTOR)
-    motor, flexibility = root.iter("joint")
-    _add(motor, f"{{{_DRAKE}}}rotor_inertia").text = repr(hinges.rotor_inertia)
-    _add(motor, f"{{{_DRAKE}}}gear_ratio").text = repr(hinges.gear_ratio)
-    # With effort 0, the joint has no actuator.
-    _add(_add(flexibility.find("axis"), "limit"), "effort").text = "0"
-    return root
-
-
-def _described(
-    hinges: TwoHinges, name: str, namespaces: Mapping[str, str], rotor_inertia: float
-) -> Any:
-    """The model in SDF."""
-    root = etree.Element("sdf", version="1.7", nsmap=dict(namespaces))
-    model = _add(root, "model", name=name)
-    _sdf_link(model, f"{name}_rotor", 0.001, rotor_inertia)
-    model.append(etree.Comment(_PLACEHOLDER))
-    _sdf_link(model, f"{name}_link", 1.0, 0.01)
-    motor = _sdf_joint(model, f"{name}_motor", "world", f"{name}_rotor")
-    _add(motor, "damping").text = repr(hinges.damping.value)
-    _add(motor, "friction").text = repr(hinges.frictionloss.value)
-    spring = _sdf_joint(model, f"{name}_flexibility", f"{name}_rotor", f"{name}_link")
-    _add(spring, "damping").text = repr(hinges.spring_damping.value)
-    _add(spring, "spring_reference").text = repr(hinges.spring.reference)
-    _add(spring, "spring_stiffness").text = repr(hinges.spring.stiffness[0])
-    return root
-
-
-def _sdf_link(model: Any, name: str, mass: float, inertia: float) -> None:
-    inertial = _add(_add(model, "link", name=name), "inertial")
-    _add(inertial, "mass").text = repr(mass)
-    tensor = _add(inertial, "inertia")
-    for element in ("ixx", "iyy", "izz"):
-        _add(tensor, element).text = repr(max(inertia, _ROTOR))
-
-
-def _sdf_joint(model: Any, name: str, parent: str, child: str) -> Any:
-    """A joint; returns its element dynamics."""
-    joint = _add(model, "joint", name=name, type="revolute")
-    _add(joint, "parent").text, _add(joint, "child").text = parent, child
-    axis = _add(joint, "axis")
-    _add(axis, "xyz").text = "0 0 1"
-    return _add(axis, "dynamics")
-
-
-def _urdf(hinges: TwoHinges, name: str) -> Any:
-    root = etree.Element("robot", name=name)
-    _add(root, "link", name=f"{name}_base")
-    _urdf_link(root, f"{name}_rotor", 0.001, hinges.armature.value)
-    root.append(etree.Comment(_PLACEHOLDER))
-    _urdf_link(root, f"{name}_link", 1.0, 0.01)
-    motor = {"damping": hinges.damping, "friction": hinges.frictionloss}
-    _urdf_joint(root, f"{name}_motor", f"{name}_base", f"{name}_rotor", motor)
-    flexibility, spring = f"{name}_flexibility", {"damping": hinges.spring_damping}
-    _urdf_joint(root, flexibility, f"{name}_rotor", f"{name}_link", spring)
-    gazebo = _add(root, "gazebo", reference=flexibility)
-    _add(gazebo, "springReference").text = repr(hinges.spring.reference)
-    _add(gazebo, "springStiffness").text = repr(hinges.spring.stiffness[0])
-    return root
-
-
-def _urdf_link(root: Any, name: str, mass: float, inertia: float) -> None:
-    inertial = _add(_add(root, "link", name=name), "inertial")
-    _add(inertial, "mass", value=repr(mass))
-    tensor = {"ixx": inertia, "iyy": inertia, "izz": inertia}
-    off = dict.fromkeys(("ixy", "ixz", "iyz"), "0")
-    _add(inertial, "inertia", **{k: repr(max(v, _ROTOR)) for k, v in tensor.items()}, **off)
-
-
-def _urdf_joint(
-    root: Any, name: str, parent: str, child: str, dynamics: Mapping[str, Parameter]
-) -> None:
-    joint = _add(root, "joint", name=name, type="continuous")
-    _add(joint, "parent", link=parent)
-    _add(joint, "child", link=child)
-    _add(joint, "axis", xyz="0 0 1")
-    _add(joint, "dynamics", **_values(dynamics))
-
-
-def _values(parameters: Mapping[str, Parameter]) -> dict[str, str]:
-    return {name: repr(each.value) for name, each in parameters.items()}
-
-
-def _add(parent: Any, tag: str, **attributes: str) -> Any:
-    return etree.SubElement(parent, tag, attributes)
-
-
-MODELS: Mapping[str, Callable[[TwoHinges, str], Any]] = {
-    "mjcf": _mjcf,
-    "sdf": _sdf,
-    "urdf": _urdf,
-    "drake": _drake,
-}
-"""Functions that make the XML of a file, by kind."""

@@ -15,8 +15,8 @@ from bokeh.core.templates import get_env
 from bokeh.document import Document
 from bokeh.events import DocumentReady
 from bokeh.models import Column, Row, UIElement
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
+from sigmahat.files.templates import environment
 from sigmahat.logs.configuration import FILL_IN, PORTS
 from sigmahat.page import edits
 from sigmahat.page.edits import BY_SCALE, CHOICES, OF_PORT, PARAMETERS, TITLES, UNITS
@@ -28,9 +28,7 @@ if TYPE_CHECKING:
     from sigmahat.report.plots import Plot
 
 _NONE = ""
-_TEMPLATES = Environment(
-    loader=FileSystemLoader(Path(__file__).parent), autoescape=True, undefined=StrictUndefined
-)
+_TEMPLATES = environment(Path(__file__).parent)
 
 
 class PortPanel:

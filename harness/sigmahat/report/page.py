@@ -11,10 +11,10 @@ import numpy as np
 import pyarrow as pa
 from bokeh.embed import components
 from bokeh.resources import Resources
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from numpy.typing import NDArray
 
 from sigmahat.files.tables import read_csv
+from sigmahat.files.templates import environment
 from sigmahat.logs.estimate import JOINTS
 from sigmahat.logs.panels import (
     SIDES,
@@ -207,9 +207,8 @@ def _page(contents: Contents) -> str:
     made = plots([*contents.answer, *contents.panels], contents.every, contents.marks)
     script, divs = components([plot.figure for plot in made]) if made else ("", [])
     shown, first = list(zip(made, divs, strict=True)), len(contents.answer)
-    loader = FileSystemLoader(Path(__file__).parent)
-    environment = Environment(loader=loader, autoescape=True, undefined=StrictUndefined)
-    return environment.get_template("page.html").render(
+    page = environment(Path(__file__).parent).get_template("page.html")
+    return page.render(
         contents=contents,
         answer=shown[:first],
         plots=shown[first:],

@@ -1,0 +1,13 @@
+"""Jinja2 for the templates of the package and of the model descriptions."""
+
+from pathlib import Path
+
+import jinja2
+
+
+def environment(*folders: Path, autoescape: bool = True) -> jinja2.Environment:
+    """Jinja2 for the templates in these folders; a name without a value is an error."""
+    loader = jinja2.FileSystemLoader(folders)
+    return jinja2.Environment(
+        loader=loader, undefined=jinja2.StrictUndefined, autoescape=autoescape
+    )
