@@ -8,6 +8,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from sigmahat import joint
 from sigmahat.export import archive
 from sigmahat.files.templates import environment
 from sigmahat.fmi.instance import Fmu, Value
@@ -24,7 +25,7 @@ def write(ssp: Path, plant: Path, estimator: Path, templates: Path, version: str
     table1 = scenario("table1")
     residual = table1.estimators["RESIDUAL"]
     connections = residual.connections
-    jinja = environment(templates)
+    jinja = environment(templates, Path(joint.__file__).with_name("templates"))
     with Fmu(plant) as of_plant, Fmu(estimator) as of_estimator, TemporaryDirectory() as folder:
         units = {u.name: u for f in (of_plant, of_estimator) for u in f.description.unitDefinitions}
         sent = dict.fromkeys((*connections.values(), "sigma"))
@@ -49,7 +50,7 @@ def write(ssp: Path, plant: Path, estimator: Path, templates: Path, version: str
             ("plant", of_plant, {**table1.plant.start, **_torques(table1)}),
             ("estimator", of_estimator, residual.start),
         ):
-            more = {"element": element, "parameters": _parameters(fmu, start)}
+            more = {"element": element, "comments": (), "parameters": _parameters(fmu, start)}
             add(f"resources/{element}.ssv", "parameters.ssv", **more)
         archive.write(ssp, contents)
 

@@ -10,18 +10,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from lxml import etree
-
 from sigmahat.files.output import write_whole
+from sigmahat.files.templates import environment
 from sigmahat.fmi.instance import Fmu
 from sigmahat.joint.sheet import Sheet, origin
 
 _CURVE = "rls.eta_0["
-_NAMESPACES = {
-    "ssc": "http://ssp-standard.org/SSP1/SystemStructureCommon",
-    "ssv": "http://ssp-standard.org/SSP1/SystemStructureParameterValues",
-}
-_SSC, _SSV = (f"{{{namespace}}}" for namespace in _NAMESPACES.values())
+_TEMPLATES = Path(__file__).with_name("templates")
 
 
 @dataclass(frozen=True)
@@ -75,33 +70,29 @@ def _ssv(sheet: Sheet, fmu: Fmu, starts: list[_Start], name: str) -> str:
     numbers = ("Real", "Integer")
     listed = [s for s in starts if s.variable.type in numbers or not s.is_default]
     units = {s.variable.unit for s in listed}
-    try:
-        root = etree.Element(_SSV + "ParameterSet", name=name, version="1.0", nsmap=_NAMESPACES)
-    except ValueError as error:
+    if re.search(r"[\x00-\x1f\ud800-\udfff\ufffe\uffff]", name):
         raise ValueError(
             f"the file name {name!r} is also the name of the contents: expected characters that "
             "XML allows; choose another name with --out"
-        ) from error
-    for line in _head(sheet):
-        root.addprevious(etree.Comment(f" {line} "))
-    parameters = etree.SubElement(root, _SSV + "Parameters")
-    for s in listed:
-        parameter = etree.SubElement(parameters, _SSV + "Parameter", name=s.name)
-        unit = {"unit": s.variable.unit} if s.variable.unit else {}
-        etree.SubElement(parameter, _SSV + s.variable.type, value=s.item or s.text, **unit)
-    defined = etree.SubElement(root, _SSV + "Units")
-    for unit in fmu.description.unitDefinitions:
-        if unit.name in units:
-            element = etree.SubElement(defined, _SSC + "Unit", name=unit.name)
-            etree.SubElement(element, _SSC + "BaseUnit", _base(unit))
-    head, document = '<?xml version="1.0" encoding="UTF-8"?>\n', root.getroottree()
-    return head + str(etree.tostring(document, encoding="unicode", pretty_print=True))
-
-
-def _base(unit: Any) -> dict[str, str]:
-    base = unit.baseUnit
-    powers = {name: getattr(base, name) for name in ("kg", "m", "s", "rad")} if base else {}
-    return {name: str(power) for name, power in powers.items() if power}
+        )
+    return (
+        environment(_TEMPLATES)
+        .get_template("parameters.ssv")
+        .render(
+            element=name,
+            comments=_head(sheet),
+            parameters=[
+                {
+                    "name": s.name,
+                    "type": s.variable.type,
+                    "value": s.item or s.text,
+                    "unit": s.variable.unit,
+                }
+                for s in listed
+            ],
+            units=[unit for unit in fmu.description.unitDefinitions if unit.name in units],
+        )
+    )
 
 
 def _matlab(sheet: Sheet, fmu: Fmu, starts: list[_Start], name: str) -> str:
