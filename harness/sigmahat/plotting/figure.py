@@ -91,6 +91,7 @@ _STYLE: Any = {
     "legend.fontsize": 8,
     "lines.linewidth": 1.0,
     "savefig.dpi": 150,
+    "path.simplify_threshold": 0.5,  # [pixels]: noise of a long signal in a small file
     "svg.hashsalt": "sigmahat",  # the same picture gives the same file
 }
 

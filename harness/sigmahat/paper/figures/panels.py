@@ -41,8 +41,7 @@ def time_panels(count: int) -> tuple[Figure, list[Axes]]:
 
 def line(axes: Axes, t: Array, values: Array, **style: Any) -> None:
     """A signal over time."""
-    kept = _envelope(values)
-    axes.plot(t[kept], values[kept], **style)
+    axes.plot(t, values, **style)
     axes.margins(x=0.01)
 
 
@@ -114,14 +113,3 @@ def first_reversal(t: Array, values: Array) -> float:
     later = t > 1.0
     changes = np.flatnonzero(np.diff(np.sign(values[later])))
     return float(t[later][changes[0]] if len(changes) else t[len(t) // 2])
-
-
-def _envelope(values: Array, buckets: int = 1000) -> NDArray[np.intp]:
-    """Indices that give the same picture as all samples: minimum and maximum of each bucket."""
-    count = len(values) // buckets
-    if count < 4:
-        return np.arange(len(values))
-    whole = values[: buckets * count].reshape(buckets, count)
-    first = np.arange(buckets) * count
-    ends = (0, len(values) - 1)
-    return np.unique(np.r_[first + whole.argmin(axis=1), first + whole.argmax(axis=1), ends])
