@@ -7,12 +7,14 @@ import numpy as np
 
 from sigmahat.checks.findings import Finding, Kind, Proposal, Severity
 from sigmahat.checks.view import View
+from sigmahat.guessing.columns import PERIODS, smallest_step
 from sigmahat.identification.noise import is_only_noise
 from sigmahat.logs.configuration import Port
 from sigmahat.logs.log import Array
 from sigmahat.logs.units import factor
 
 _LOOKED_AT = 20_000  # about how many values are searched for the step of an encoder
+_STEPS = 20  # fewer steps between distinct values show no encoder
 _FINER = 1.5  # a configured step that differs by more than this factor is wrong
 _FLAT = 3  # consecutive samples at an end of the range
 _OFTEN = 0.01  # fraction of all samples
@@ -21,7 +23,6 @@ _LEAST = 20  # samples
 _SPIKE, _ALONE = 0.1, 5.0
 """A spike: the least distance from the neighbours over the range, and over their own distance."""
 _FEW = 50  # with fewer distinct values, the torque is a series of steps
-_PERIODS = (360.0, 2 * math.pi, *(2.0**k for k in range(8, 33)))
 
 
 def columns(seen: View) -> Iterator[Finding]:
@@ -68,7 +69,7 @@ def _jumps(name: str, port: Port, values: Array) -> Iterator[Finding]:
     jump = float(np.abs(steps, out=steps).max())
     if span == 0 or jump < 0.9 * span or float(np.quantile(steps, 0.9)) > 0.2 * jump:
         return
-    period = min(_PERIODS, key=lambda each: abs(each - span))
+    period = min(PERIODS, key=lambda each: abs(each - span))
     known = period if abs(period / span - 1) < 0.02 else None
     key, unit = f"ports.{name}.wrap", port.unit or "rad"
     yield Finding(Kind.JUMP, Severity.WRONG, key, jump, unit, None, known, about=name)
@@ -90,8 +91,8 @@ def _spikes(name: str, port: Port, values: Array) -> Iterator[Finding]:
 def step(seen: View, name: str, port: Port, values: Array) -> Iterator[Finding]:
     """Compares the step of the values with the step of the configured encoder."""
     given = float(seen.every[f"encoder.{name}"])
-    step = smallest_step(values[:: max(1, len(values) // _LOOKED_AT)])
-    if not given or step is None:
+    step = smallest_step(values[:: max(1, len(values) // _LOOKED_AT)], _STEPS)
+    if not given or math.isinf(step):
         return
     angle = abs(step * factor(name, port) / port.gear_ratio)
     expected = 2 * math.pi / given
@@ -107,22 +108,6 @@ def step(seen: View, name: str, port: Port, values: Array) -> Iterator[Finding]:
         others, key, proposed = [(key, proposed)], f"ports.{name}.unit", unit
     severity = Severity.WRONG if angle > expected else Severity.NOTE
     yield Finding(Kind.STEP, severity, key, angle, "rad", expected, proposed, others, name)
-
-
-def smallest_step(values: Array) -> float | None:
-    """The step if nearly all differences of the values are multiples of one step, else None."""
-    distinct = np.unique(values)
-    if len(distinct) < 2:
-        return None
-    steps = np.diff(distinct)
-    steps = steps[steps > 1e-9 * np.ptp(distinct)]
-    if len(steps) < 20:
-        return None
-    step = float(np.median(steps[steps < 1.5 * steps.min()]))
-    ratio = steps / step
-    ratio = ratio[ratio < 10]  # rounding of text hides the remainder of a larger ratio
-    is_multiple = np.abs(ratio - np.round(ratio)) < 0.05
-    return step if np.mean(is_multiple) > 0.95 else None
 
 
 def _saturation(values: Array) -> Iterator[Finding]:

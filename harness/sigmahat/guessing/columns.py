@@ -22,6 +22,9 @@ TURN = {"rad": 2 * np.pi, "mrad": 2000 * np.pi, "deg": 360.0, "turn": 1.0}
 """A turn in units of angle."""
 _DISTINCT = 20000  # number of values that are searched for the step of an encoder
 _STATES = 8  # a column with fewer whole numbers is a state or a flag
+_STEPS = 5  # fewer steps between distinct values show no encoder
+PERIODS = (360.0, 2 * np.pi, *(2.0**k for k in range(8, 33)))
+"""Usual periods of a counter, in degrees, in radians and in counts."""
 _FEWEST_COUNTS = 100  # of an encoder in a turn
 _JUMP = 0.5  # of the range: a larger step may be a counter that starts again
 _SEEN = 0.02  # largest relative difference between a jump and a known period
@@ -56,7 +59,8 @@ def look_at(log: Log, name: str) -> tuple[Facts, Array]:
     integer = not few and bool(np.all(finite == np.round(finite)))
     wrap = None if few else _wrap(steps, float(np.ptp(finite)))
     increasing = float(np.mean(steps > 0)) if len(steps) else 0.0
-    ends, step = (float(finite.min()), float(finite.max())), 1.0 if integer else _step(finite)
+    ends = float(finite.min()), float(finite.max())
+    step = 1.0 if integer else smallest_step(finite[:_DISTINCT], _STEPS)
     facts = Facts(*ends, integer, not few, increasing, step, wrap)
     return facts, values if wrap is None else unwrap(values, wrap)[0]
 
@@ -78,17 +82,21 @@ def unit_of_steps(facts: Facts) -> str | None:
     return None
 
 
-def _step(finite: Array) -> float:
-    """Step of a quantised column; inf if the column is not quantised."""
-    distinct = np.unique(finite[:_DISTINCT])
+def smallest_step(finite: Array, fewest: int) -> float:
+    """Step of which nearly all differences of the values are multiples; inf without such a step.
+
+    fewest  least number of steps between distinct values
+    """
+    distinct = np.unique(finite)
     steps = np.diff(distinct)
     steps = steps[steps > 1e-9 * max(np.ptp(distinct), 1e-300)] if len(steps) else steps
-    if len(steps) < 5:
+    if not len(steps):
         return np.inf
     step = float(np.median(steps[steps < 1.5 * steps.min()]))
     ratio = steps / step
     even = np.abs(ratio - np.round(ratio)) < 0.05
-    if np.mean(even) <= 0.95:
+    near = ratio < 10  # rounding of text hides the remainder of a larger ratio
+    if np.count_nonzero(near) < fewest or np.mean(even[near]) <= 0.95:
         return np.inf
     # Over many steps the last digits of the values matter less.
     return float(np.sum(steps[even]) / np.sum(np.round(ratio[even])))
@@ -110,8 +118,7 @@ def _wrap(steps: Array, span: float) -> float | None:
     coming = 0.5 * (steps[inner - 1] + steps[inner + 1])
     coming[np.abs(coming) > 0.2 * span] = 0.0
     period = float(np.median(np.abs(steps[inner] - coming)))
-    exact = [360.0, 2 * np.pi, 1.0, *(2.0**k for k in range(8, 33))]
-    best = min(exact, key=lambda each: abs(each / period - 1))
+    best = min((*PERIODS, 1.0), key=lambda each: abs(each / period - 1))
     if abs(best / period - 1) < _SEEN:
         return best
     # Another period is accepted only if the motion continues during each jump.
