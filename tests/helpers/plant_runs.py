@@ -39,13 +39,14 @@ def run_plant(
         first = dict(zip(inputs, torques[0].tolist(), strict=True))
         plant.initialize({**first, **(start or {})})
         recorder = Recorder(plant, record, steps + 1)
-        loop = SampleLoop()
-        recorder.add_to(loop)
+        outputs = SampleLoop()
+        recorder.add_to(outputs)
+        loop = SampleLoop(outputs)
         loop.set_real(plant, references, np.ascontiguousarray(torques))
         loop.set_slopes(plant, references, np.ascontiguousarray(slopes))
         loop.step(plant, step_times(t, h))
         loop.run(0, steps)
-        recorder.sample(steps)
+        outputs.run(steps, steps + 1)
     return recorder.columns()
 
 

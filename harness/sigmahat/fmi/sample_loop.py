@@ -185,12 +185,6 @@ class Recorder:
         for kind, (group, table) in self._tables.items():
             loop.get(self.slave, kind, value_references(group), table)
 
-    def sample(self, k: int) -> None:
-        """Writes row k at once. Raises FmuError if the FMU refuses."""
-        loop = SampleLoop()
-        self.add_to(loop)
-        loop.run(k, k + 1)
-
     def row(self, k: int) -> dict[str, Any]:
         """Returns the values of row k by name, as columns() would."""
         values: dict[str, Any] = {}
@@ -212,3 +206,11 @@ class Recorder:
                 is_item = v.type == "Enumeration"
                 columns[v.name] = fmu.item_names(v.name, values) if is_item else values
         return columns
+
+
+def present_values(slave: Slave, names: Iterable[str]) -> dict[str, Any]:
+    """Values of variables by name, as those of a Recorder. Raises FmuError if the FMU refuses."""
+    recorder, loop = Recorder(slave, names, 1), SampleLoop()
+    recorder.add_to(loop)
+    loop.run(0, 1)
+    return recorder.row(0)

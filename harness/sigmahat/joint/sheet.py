@@ -17,7 +17,7 @@ from pydantic.dataclasses import dataclass
 
 from sigmahat.files.output import write_json
 from sigmahat.fmi.instance import Slave, Value
-from sigmahat.fmi.sample_loop import Recorder
+from sigmahat.fmi.sample_loop import present_values
 from sigmahat.joint.stored import NO_OTHER_KEYS, FmuId, Format, LearnedLog, Range, Text
 
 UNITS = {"phi": "rad", "set_point": "1", "sigma": "N.m/rad", "tau_e": "N.m", "misfit": "1"}
@@ -249,9 +249,7 @@ def start_values(slave: Slave, every: Mapping[str, Value]) -> dict[str, Value]:
     every  parameters of the slave
     """
     eta = [name for name in slave.fmu.variables if name.startswith("eta[")]
-    outputs = Recorder(slave, [*eta, "B_hat", "D_theta_hat"], 1)
-    outputs.sample(0)
-    found = {name: float(column[0]) for name, column in outputs.columns().items()}
+    found = present_values(slave, [*eta, "B_hat", "D_theta_hat"])
     at = {name: tuple(map(int, name[4:-1].split(","))) for name in eta}
     used = [at[name] for name in eta if found[name]]
     n = max([int(every["rls.n"]), *(i + 1 for i, _ in used)])

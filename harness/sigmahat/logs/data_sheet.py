@@ -10,7 +10,7 @@ from sigmahat.files import toml_file
 from sigmahat.files.output import sha256
 from sigmahat.fmi.installed import version
 from sigmahat.fmi.instance import Fmu, Slave, Value
-from sigmahat.fmi.sample_loop import Recorder
+from sigmahat.fmi.sample_loop import present_values
 from sigmahat.joint import sheet
 from sigmahat.joint.curve import NORMAL_95, Curve
 from sigmahat.joint.stored import FmuId, Range
@@ -111,9 +111,7 @@ def _check(fmu: Fmu, start: Mapping[str, Value]) -> sheet.Check:
     """Outputs of the FMU with the start values, before any sample."""
     with Slave(fmu, "check") as other:
         other.initialize(start)
-        outputs = Recorder(other, ["sigma", "tau_e"], 1)
-        outputs.sample(0)
-        return sheet.Check(**outputs.row(0))
+        return sheet.Check(**present_values(other, ["sigma", "tau_e"]))
 
 
 def _parameters(

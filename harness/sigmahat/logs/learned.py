@@ -13,7 +13,7 @@ from typing import Any
 from sigmahat.files.output import write_json
 from sigmahat.fmi.installed import version
 from sigmahat.fmi.instance import FmuError, Slave, Value
-from sigmahat.fmi.sample_loop import Recorder
+from sigmahat.fmi.sample_loop import present_values
 from sigmahat.joint.stored import NO_OTHER_KEYS, FmuId, Format, LearnedLog, Text
 from sigmahat.logs.log import LogError
 from sigmahat.logs.replay import gap
@@ -110,9 +110,7 @@ def _parameters(slave: Slave) -> dict[str, Value]:
     """All parameters, read from the FMU itself."""
     fmu = slave.fmu
     names = [name for name, v in fmu.variables.items() if v.causality == "parameter"]
-    recorder = Recorder(slave, names, 1)
-    recorder.sample(0)
-    return recorder.row(0)
+    return present_values(slave, names)
 
 
 def _compare(

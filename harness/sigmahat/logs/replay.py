@@ -9,7 +9,7 @@ from fmpy import fmi2
 from numpy.typing import NDArray
 
 from sigmahat.fmi.instance import Fmu, Slave, Value
-from sigmahat.fmi.sample_loop import Recorder, SampleLoop, step_times
+from sigmahat.fmi.sample_loop import Recorder, SampleLoop, present_values, step_times
 from sigmahat.logs.configuration import PORTS, Configuration
 from sigmahat.logs.log import LogError
 from sigmahat.logs.sampling import Samples
@@ -91,9 +91,8 @@ def play(
 
 def coefficients(slave: Slave, n: int, m: int) -> Sequence[Sequence[float]]:
     """Current coefficients eta of (21), [size: n x m]."""
-    outputs = Recorder(slave, (f"eta[{i},{j}]" for i in range(n) for j in range(m)), 1)
-    outputs.sample(0)
-    return np.array([*outputs.row(0).values()]).reshape(n, m).tolist()
+    outputs = present_values(slave, (f"eta[{i},{j}]" for i in range(n) for j in range(m)))
+    return np.array([*outputs.values()]).reshape(n, m).tolist()
 
 
 def gap(slave: Slave, t_0: float, every: Mapping[str, Value]) -> float:
