@@ -22,6 +22,7 @@ from sigmahat.page import edits
 from sigmahat.page.edits import BY_SCALE, CHOICES, OF_PORT, PARAMETERS, TITLES, UNITS
 from sigmahat.page.inputs import Choice, Number, button, in_grid, words
 from sigmahat.page.setup import Setup
+from sigmahat.plotting.style import PAGE
 
 if TYPE_CHECKING:
     from sigmahat.checks.findings import Checked, Finding
@@ -282,7 +283,8 @@ class Window:
             document.add_root(root)
         text = Path(__file__).with_name("page.html").read_text(encoding="utf-8")
         document.template = get_env().from_string(text)
-        document.template_variables.update(log=setup.log.path.name, ports=TITLES)
+        style = PAGE.read_text(encoding="utf-8")
+        document.template_variables.update(log=setup.log.path.name, ports=TITLES, style=style)
         document.title = f"sigmahat: {setup.log.path.name}"
         self._show()
         document.on_event(DocumentReady, lambda _: ready())

@@ -27,7 +27,7 @@ from sigmahat.logs.panels import (
 )
 from sigmahat.paper.reproduction import SEEDS, TABLE, TIME, read_result_files
 from sigmahat.plotting.panels import COLORS, TRUE, Curve, Kind, Panel
-from sigmahat.plotting.style import QUANTITIES, plain_axis
+from sigmahat.plotting.style import PAGE, QUANTITIES, plain_axis
 from sigmahat.report.contents import Contents, TextTable, of_file
 from sigmahat.report.from_log import from_joints, from_log
 from sigmahat.report.plots import plots
@@ -210,6 +210,7 @@ def _page(contents: Contents) -> str:
     page = environment(Path(__file__).parent).get_template("page.html")
     return page.render(
         contents=contents,
+        style=PAGE.read_text(encoding="utf-8"),
         answer=shown[:first],
         plots=shown[first:],
         pictures=[b64encode(path.read_bytes()).decode() for path in contents.pictures],
