@@ -1,22 +1,6 @@
 """The plan of a sweep, with its runs in their order, and the outcome of a run.
 
-The plan as a TOML file:
-
-    scenario = ["table1"]           # see `sigmahat scenarios`
-    seeds = 100                     # 1 to 100; of the noise, and of drawn values
-    modality = ["RESIDUAL"]         # estimators of the scenarios; left out: all
-    [parameters]
-    plant.motor.D_theta = [0.9e-3, 1.1e-3]
-    estimator.residual.K_I = "100:500:5"
-    RESIDUAL.motor.B = "normal(2.3e-5, 1e-6)"
-
-A parameter belongs to the plant, to one estimator, or to all estimators: "estimator". Values of a
-parameter, on the command line or in a file:
-
-0.9e-3,1.1e-3          each value of a list; names of items and true, false too
-0.8e-3:1.2e-3:9        9 values at equal distances, both ends included
-uniform(0.9e-3,1.1e-3) drawn for each seed, between two ends
-normal(1e-3,5e-5)      drawn for each seed, by mean and standard deviation
+docs/sweeps.md has a plan as a TOML file, and the forms of the values of a parameter.
 """
 
 import itertools
@@ -60,7 +44,7 @@ Values = tuple[Value, ...] | Drawn
 
 
 def values(text: Any) -> Values:
-    """Reads the values of a parameter: text as above, or a value or list of values of a plan.
+    """Reads the values of a parameter: a text, or a value or list of values of a plan.
 
     Raises ValueError, which says what is expected.
     """
