@@ -81,7 +81,6 @@ _TIME = plain_axis("t")
 _WIDE = 3.5  # line width of the truth, which stays visible under an estimate
 SIDES = ("", "_1", "_2")
 """Suffixes of variables: of the joint, or of the sides of an antagonistic pair."""
-_OUTER = 1.0  # percent of the values that the axis of a stiffness may leave out at each end
 
 
 @dataclass(frozen=True)
@@ -142,7 +141,7 @@ def stiffness_panels(reduced: Reduced, estimates: Sequence[Estimate]) -> Iterato
             _TIME,
             plain_axis("sigma"),
             [*truth, *lines],
-            y_range=_with_band(_range(scale), lines),
+            y_range=_with_band(with_margin(*limits(scale), 0.2), lines),
             caption="band: 95 %" if any(line.band for line in lines) else "",
         )
         if true is not None:
@@ -234,15 +233,6 @@ def _every(curves: Sequence[Curve]) -> tuple[float, float]:
     """Limits of an axis that do not depend on a spike, for example after a gap."""
     ends = [limits(curve.y) for curve in curves]
     return with_margin(min(end[0] for end in ends), max(end[1] for end in ends), 0.06)
-
-
-def _range(values: NDArray[Any]) -> tuple[float, float]:
-    """Limits of an axis that leave the outermost values out."""
-    finite = values[np.isfinite(values)]
-    if not len(finite):
-        return 0.0, 1.0
-    low, high = np.percentile(finite, [_OUTER, 100 - _OUTER]).tolist()
-    return with_margin(low, high, 0.2)
 
 
 def curve_panels(curve: joint.Curve, points: MeasuredPoints) -> Iterator[Panel]:
