@@ -66,8 +66,8 @@ int sh_violates(sh_violation *violation, const char *name, sh_real value, const 
 /* Resolution of an encoder [rad], 0 without quantisation. */
 sh_real sh_encoder_count(sh_real counts_per_turn);
 
-/* The flexibility torque that feeds the regression by the modality: of the sensor, of the model at
- * the measured positions, or from_motor [N.m].
+/* The flexibility torque that the regression uses [N.m]. The modality chooses between the torque of the
+ * sensor, the torque of the model at the measured positions, and from_motor.
  */
 sh_real sh_regression_torque(const sh_parameters *p, const sh_measurement *z, sh_real from_motor);
 

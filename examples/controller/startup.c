@@ -2,7 +2,7 @@
 #include <stdint.h>
 
 void stack_top(void); /* not a function but an address, from mps2.ld */
-void _start(void);    /* of the C library: clears .bss, calls main and exit */
+void _start(void);    /* from the C library: clears .bss, calls main and exit */
 void SysTick_Handler(void);
 
 /* For programs without interrupts. */

@@ -64,7 +64,7 @@ def test_ticks_notes_parameters_and_findings(folder: Path, page: Page) -> None:
     parameters = page.run(ROWS, "Joint and motor")
     findings = page.run(ROWS, "Checks")
     every = page.run(ROWS, "Parameters of the estimator")
-    assert f"201 of {answer['ticks']} ticks of 0.001 s skipped" in text
+    assert f"201 of {answer['ticks']} ticks skipped, a tick every 0.001 s" in text
     for note in answer["notes"]:
         assert note in text
     assert findings == ["wrong motor.gamma: 50, expected <100>"]

@@ -129,7 +129,7 @@ def open_page(log: Path, config: Path | None, port: int) -> None:
 def check(log: Path, config: Path | None, joint: str) -> int:
     """Find likely errors in the configuration of LOG, and name the keys to look at.
 
-    The log shows signs, units, gear ratios, zeros and delays. Unverifiable assumptions are listed.
+    Errors of signs, units, gear ratios, zeros and delays are found. What no log can show is listed.
     Exit status: 0 if nothing contradicts the log, 1 if something does.
 
     \b

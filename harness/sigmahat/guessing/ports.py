@@ -172,7 +172,9 @@ def _unit_by_other(port: PortGuess, other: PortGuess, slope: float) -> PortGuess
         return port
     same = [unit for unit in TURN if abs(slope * TURN[other.unit] / TURN[unit] - 1) < _AS_FAR]
     unit = same[0] if same else other.unit
-    return port.noted("unit", "CHECK: by the other position, with which it moves", unit=unit)
+    return port.noted(
+        "unit", "CHECK: guessed from the other position, which moves by the same angle", unit=unit
+    )
 
 
 def _gear(theta: PortGuess, q: PortGuess, slope: float, rest: float) -> PortGuess:

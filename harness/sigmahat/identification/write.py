@@ -197,7 +197,7 @@ def _is_not_known(name: str, item: Item, start: Mapping[str, float]) -> bool:
     if comment.endswith(NOT_YOURS):
         return bool(value == start.get(name, value))
     if comment.endswith(WIDE_PRIOR):
-        # Of the Coulomb friction it is the end of an interval, which looks like any other value.
+        # A wide prior of the Coulomb friction is the end of an interval: no value is typical for it.
         return bool(name == "prior.tau_coulomb" or value >= WIDE)
     return True
 

@@ -84,7 +84,10 @@ def characteristic(reach: Range) -> tuple[float, float, float]:
 
 
 def nearest(settings: Sequence[float], set_points: Array) -> NDArray[np.intp]:
-    """Index of the increasing setting to which each point belongs; -1 if it is far from all."""
+    """Index of the setting that each point belongs to; -1 if the point is far from all settings.
+
+    settings  in increasing order
+    """
     if len(settings) == 1:
         return np.zeros(len(set_points), np.intp)
     levels = np.asarray(settings, np.float64)

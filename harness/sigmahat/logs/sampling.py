@@ -56,7 +56,7 @@ def sample(log: Log, configuration: Configuration, T: float) -> Samples:
     asked = dict(configuration.ports), configuration.time, T
     last = _last.get(log)
     if last is None or last[0] != asked:
-        _last.pop(log, None)  # before the next one needs memory, too
+        _last.pop(log, None)  # first: its memory is free for the next one
         last = asked, _sample(log, configuration, T)
         last[1].values.flags.writeable = False
         _last[log] = last

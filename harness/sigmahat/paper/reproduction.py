@@ -1,6 +1,6 @@
 """The job of `sigmahat reproduce`: runs of a scenario over seeds, and their performance indices.
 
-Its files are written and read here, and the table of indices is printed.
+This module also writes and reads the files of this job, and prints the table of indices.
 """
 
 from __future__ import annotations

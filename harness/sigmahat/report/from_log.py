@@ -112,7 +112,7 @@ def from_log(folder: Path) -> Contents:
             _origin(answer, folder),
             # A gap in the log has ticks, but no rows.
             f"{len(used)} rows over {t[-1] - t[0]:.6g} s; "
-            f"{log.skipped} of {log.ticks} ticks of {log.T:g} s skipped",
+            f"{log.skipped} of {log.ticks} ticks skipped, a tick every {log.T:g} s",
             *(["Dotted lines: changes of the stiffness, see Samples."] if marks else []),
         ],
         tables,
