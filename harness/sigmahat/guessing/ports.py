@@ -173,7 +173,7 @@ def _unit_by_other(port: PortGuess, other: PortGuess, slope: float) -> PortGuess
     same = [unit for unit in TURN if abs(slope * TURN[other.unit] / TURN[unit] - 1) < _AS_FAR]
     unit = same[0] if same else other.unit
     return port.noted(
-        "unit", "CHECK: guessed from the other position, which moves by the same angle", unit=unit
+        "unit", "CHECK: from the other position, which turns as far", unit=unit
     )
 
 

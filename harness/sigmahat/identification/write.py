@@ -197,7 +197,7 @@ def _is_not_known(name: str, item: Item, start: Mapping[str, float]) -> bool:
     if comment.endswith(NOT_YOURS):
         return bool(value == start.get(name, value))
     if comment.endswith(WIDE_PRIOR):
-        # A wide prior of the Coulomb friction is the end of an interval: no value is typical for it.
+        # A wide prior of the Coulomb friction may have any value: it is the end of an interval.
         return bool(name == "prior.tau_coulomb" or value >= WIDE)
     return True
 
