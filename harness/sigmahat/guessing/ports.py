@@ -172,9 +172,7 @@ def _unit_by_other(port: PortGuess, other: PortGuess, slope: float) -> PortGuess
         return port
     same = [unit for unit in TURN if abs(slope * TURN[other.unit] / TURN[unit] - 1) < _AS_FAR]
     unit = same[0] if same else other.unit
-    return port.noted(
-        "unit", "CHECK: from the other position, which turns as far", unit=unit
-    )
+    return port.noted("unit", "CHECK: from the other position, which turns as far", unit=unit)
 
 
 def _gear(theta: PortGuess, q: PortGuess, slope: float, rest: float) -> PortGuess:
