@@ -25,15 +25,16 @@ def run_plant(
     record: Iterable[str] = (),
     *,
     held: bool = False,
+    t: Array | None = None,
 ) -> dict[str, Array]:
     """A plant in communication steps of h [s] under torques [size: steps + 1 x inputs].
 
-    Torques are linear from one row to the next, or each is held until the next. Gives each
-    recorded variable [size: steps + 1].
+    Torques are linear from one row to the next, or each is held until the next. The steps begin at
+    multiples of h, or at the times t of the rows. Gives each recorded variable [size: steps + 1].
     """
     steps = len(torques) - 1
     slopes = np.zeros_like(torques) if held else np.diff(torques, axis=0, append=0.0) / h
-    t = times(h, steps * h)
+    t = times(h, steps * h) if t is None else t
     with Fmu(sigmahat.fmu(name)) as fmu, Slave(fmu, "plant") as plant:
         references = fmu.references(inputs, "input")
         first = dict(zip(inputs, torques[0].tolist(), strict=True))

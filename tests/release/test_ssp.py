@@ -12,7 +12,7 @@ from libcosimpy.CosimExecution import CosimExecution
 from libcosimpy.CosimObserver import CosimObserver
 
 import sigmahat
-from fmi_master import run
+from plant_runs import run_plant
 from sigmahat.fmi.instance import Fmu
 from sigmahat.fmi.master import simulate
 from sigmahat.paper.scenarios import scenario
@@ -66,13 +66,15 @@ def result(ssp: Path) -> Any:
 
 
 def test_fmpy_passes_zeros_to_the_first_tick_and_is_else_exact(result: Any) -> None:
-    """A master written from the rule of docs/how-to/fmpy.md gives identical results."""
-    still = np.zeros((len(result), 2))
-    own = run(still, times=result["time"], start=SIGNALS, zeros_first=True)
+    """The plant in the loop of the package, and the estimator without an FMU, are identical."""
+    still, record = np.zeros((len(result), 1)), ("sigma", *RESIDUAL.connections.values())
+    plant = run_plant("AwasPlant", ["tau"], T, still, SIGNALS, record, t=result["time"])
     # FMPy records the outputs of the plant after the step with the time of its begin.
-    np.testing.assert_array_equal(result["plant.sigma"][:-1], own["plant.sigma"][1:])
-    np.testing.assert_array_equal(result["estimator.sigma"], own["estimator.sigma"])
-    assert own["estimator.sigma"].any()
+    np.testing.assert_array_equal(result["plant.sigma"][:-1], plant["sigma"][1:])
+    measured = {to: np.append(0.0, plant[of][1:]) for to, of in RESIDUAL.connections.items()}
+    ticks = sigmahat.Estimator({}).run(**measured)["sigma"]
+    np.testing.assert_array_equal(result["estimator.sigma"], ticks)
+    assert ticks.any()
 
 
 def test_the_system_as_it_is_gives_table_1(result: Any) -> None:
