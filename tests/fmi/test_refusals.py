@@ -265,6 +265,7 @@ def test_invalid_references_and_values_are_refused(name: str, fmi: Fmi) -> None:
                     assert fmu.access(function, theta, place) == ERROR
                     assert f"is {driver.inputs[0]}, which is {fmu.real}" in fmu.last_message
                 assert fmu.access(function, None, (ctypes.c_int64 * 0)()) == OK
+        assert place[0] == 0  # nothing was read
         for refused in names(fmu, "output") + names(fmu, "parameter", "fixed"):
             assert fmu.set(refused, 1) == ERROR
             assert f"{refused} cannot be set now" in fmu.last_message
