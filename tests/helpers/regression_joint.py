@@ -155,3 +155,23 @@ class MisfitJoint(Joint):
     def spring(self, phi: Array, r: Array) -> tuple[Array, Array]:
         sigma = STIFFNESS * self.stiffness(self.t)
         return sigma * phi, sigma
+
+
+def hardening(phi: Array, theta_c: Array | float) -> tuple[Array, Array]:
+    """Torque [N.m] and stiffness [N.m/rad] of a spring that another motor makes stiffer."""
+    share = 1 + 0.3 * theta_c
+    return share * (STIFFNESS * phi + 3000 * phi**3), share * (STIFFNESS + 9000 * phi**2)
+
+
+@dataclass(frozen=True)
+class HardeningJoint(MisfitJoint):
+    """A joint with this spring; theta_c is a sine of 1 rad."""
+
+    @property
+    def motion(self) -> tuple[Array, Array, Array, Array, Array]:
+        theta, theta_dot, theta_ddot, phi, _ = super().motion
+        r = 0.1 - SCREW * np.sin(2 * np.pi * 0.11 * self.t)
+        return theta, theta_dot, theta_ddot, phi, r
+
+    def spring(self, phi: Array, r: Array) -> tuple[Array, Array]:
+        return hardening(phi, (0.1 - r) / SCREW)

@@ -11,7 +11,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from closed_form_joint import CUBIC, LINEAR, OF_THETA_C, closed_form_log
 from command_line import working_in
 from recorded_logs import (
     CONFIGURATION,
@@ -23,6 +22,7 @@ from recorded_logs import (
     in_memory,
     write_log,
 )
+from regression_joint import STIFFNESS, HardeningJoint, MisfitJoint, hardening
 from sigmahat import Estimator
 from sigmahat.cli import main
 from sigmahat.joint.curve import (
@@ -61,15 +61,11 @@ def estimated(columns: Columns, configuration: str, folder: Path) -> Estimate:
         return estimate(log, read_configuration(folder / "log.toml"), folder)
 
 
-def closed_form(kind: str, seed: int, gain: float) -> Columns:
-    log = closed_form_log(kind, seed=seed)
-    return {name: log[name] for name in ("t", "theta", "q", "theta_c")} | {"tau": gain * log["tau"]}
-
-
-def truth(branch: Branch) -> tuple[Array, Array]:
-    """Torque and stiffness of the joint of closed_form_joint.py."""
-    share, phi = 1 + OF_THETA_C * branch.set_point, branch.phi
-    return share * (LINEAR * phi + CUBIC * phi**3), share * (LINEAR + 3 * CUBIC * phi**2)
+def recorded(joint: MisfitJoint, gain: float = 1.0) -> Columns:
+    """A log with good sensors, but for the gain of the torque."""
+    joint = replace(joint, counts=1 << 18, noise=1e-3)
+    log = dict(zip(("theta", "q", "theta_c", "tau"), joint.measurements().T, strict=False))
+    return {"t": joint.t, **log, "tau": gain * log["tau"]}
 
 
 @pytest.mark.slow("twenty logs are estimated")
@@ -80,11 +76,11 @@ def test_the_bands_hold_the_truth_as_often_as_they_say() -> None:
     inside: dict[str, list[float]] = {"tau_e": [], "sigma": []}
     scores = []
     for seed, gain in enumerate(gains):
-        columns = closed_form("variable_stiffness", seed, float(gain))
+        columns = recorded(HardeningJoint(seed=seed), float(gain))
         found = estimate(LogInMemory(Path("log"), columns), configuration).curve
         assert len(found.branches) == 5
         for branch in found.branches:
-            torque, stiffness = truth(branch)
+            torque, stiffness = hardening(branch.phi, branch.set_point)
             bands = {"tau_e": branch.torque_interval(), "sigma": branch.stiffness_interval()}
             for (name, band), true in zip(bands.items(), (torque, stiffness), strict=True):
                 assert band is not None
@@ -187,18 +183,18 @@ def test_a_fixed_spring_with_an_offset_has_one_curve(tmp_path: Path) -> None:
     """A general polynomial: no motor torque tells its constant from a bias, as the band says."""
     general = CLOSED_FORM.replace("rls.m = 2", "rls.m = 1\nrls.symmetric = false")
     general = general.replace("rls.n = 2", "rls.n = 3")
-    result = estimated(closed_form("stiff", 1, 1.0), general, tmp_path)
+    result = estimated(recorded(MisfitJoint()), general, tmp_path)
     (branch,) = result.curve.branches
     assert branch.tau_e_std is not None and branch.sigma_std is not None
     band = branch.torque_interval()
     assert band is not None and np.all(branch.tau_e_std > 0.1)
-    true = LINEAR * branch.phi
+    true = STIFFNESS * branch.phi
     assert np.all((band[0] <= true) & (true <= band[1]))
     lines = curve_text(result.curve)
     assert "setPoint" not in lines[0]
     middle = lines[4].split()
     assert float(middle[0]) == 0.0
-    assert float(middle[2]) < LINEAR < float(middle[4])
+    assert float(middle[2]) < STIFFNESS < float(middle[4])
 
 
 def test_paper2011_has_a_curve_without_a_band_and_claims_no_interval(tmp_path: Path) -> None:

@@ -6,14 +6,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from closed_form_joint import COUNTS, closed_form_log
-from regression_joint import D_THETA, GAMMA, B, T
+from regression_joint import D_THETA, GAMMA, B, HardeningJoint, MisfitJoint, T
 from rivals.methods import METHODS
 from rivals.records import Estimate, JointLog, Known
 from rivals.score import QUANTILE, SCORES, Result, best, judge, page, score, winkler
 
 ERRORS = {"FilteredRegression": 0.5, "least_squares": 0.1}
 """Largest root mean square error of the stiffness [%]."""
+COUNTS = 1 << 18
 KNOWN = Known(
     gamma=GAMMA,
     B=B,
@@ -30,15 +30,17 @@ KNOWN = Known(
 )
 
 
+JOINTS = {"series_elastic": MisfitJoint, "variable_stiffness": HardeningJoint}
+
+
 def ideal(kind: str, tau_coulomb: float = 0.01) -> JointLog:
     """A joint whose data sheet is right."""
-    log = closed_form_log(kind, tau_coulomb)
-    theta, q, tau, theta_c = (log[name] for name in ("theta", "q", "tau", "theta_c"))
-    unknown = np.full(len(theta), np.nan)
-    return JointLog(kind, 1, T, theta, q, tau, theta_c, unknown, log["stiffness"], KNOWN)
+    joint = JOINTS[kind](counts=COUNTS, noise=KNOWN.noise_tau, tau_coulomb=tau_coulomb)
+    theta, q, theta_c, tau, tau_e = joint.measurements().T
+    return JointLog(kind, 1, T, theta, q, tau, theta_c, tau_e, joint.sigma, KNOWN)
 
 
-@pytest.mark.parametrize("kind", ["series_elastic", "variable_stiffness"])
+@pytest.mark.parametrize("kind", JOINTS)
 def test_the_stiffness_of_an_ideal_joint_is_found(kind: str) -> None:
     log = ideal(kind)
     for method, error in ERRORS.items():
