@@ -23,6 +23,8 @@ N = 7000
         ("/right_knee_drive/current.time", "time", "motor", None),
         ("field.position0", "position", None, None),
         ("iq_A", "current", None, "A"),
+        ("motor_torque_mNm", "torque", "motor", "mN.m"),
+        ("timestamp", "time", None, None),
         ("Motorstrom in mA", "current", "motor", "mA"),
         ("Abtriebswinkel [Grad]", "position", "link", "deg"),
         ("angle_moteur_deg", "position", "motor", "deg"),
