@@ -157,11 +157,6 @@ DOUBTS = (
 """By their numbers, from 1 on."""
 
 
-def test_every_doubt_has_its_name(c: Library) -> None:
-    for number, name in enumerate(DOUBTS[1:], 1):
-        assert getattr(c.lib, f"SH_DOUBT_{name}") == number
-
-
 @pytest.mark.parametrize(
     ("joint", "values", "doubt"),
     [

@@ -9,7 +9,7 @@ import pytest
 from regression_joint import D_THETA, GAMMA, B, HardeningJoint, MisfitJoint, T
 from rivals.methods import METHODS
 from rivals.records import Estimate, JointLog, Known
-from rivals.score import QUANTILE, SCORES, Result, best, judge, page, score, winkler
+from rivals.score import QUANTILE, SCORES, Result, best, judge, page, score
 
 ERRORS = {"FilteredRegression": 0.5, "least_squares": 0.1}
 """Largest root mean square error of the stiffness [%]."""
@@ -55,12 +55,6 @@ def test_paper2011_finds_the_stiffness_of_a_joint_without_coulomb_friction() -> 
     assert score(log, estimate)["error"] < 5
     assert np.isnan(estimate.std).all()
     assert not estimate.confident.any()
-
-
-def test_the_interval_score_is_the_width_and_40_times_what_is_outside() -> None:
-    true = np.array([10.0, 10.0, 10.0])
-    low, high = np.array([9.0, 10.5, 5.0]), np.array([11.0, 12.0, 9.9])
-    np.testing.assert_allclose(winkler(true, low, high), [2.0, 1.5 + 20.0, 4.9 + 4.0])
 
 
 def short_log() -> JointLog:
