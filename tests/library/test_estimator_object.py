@@ -115,6 +115,7 @@ def test_reset_forgets_and_keeps_what_was_tuned(z: Samples) -> None:
         ({"motor.B": -1.0}, r"motor\.B: expected >= 1e-15, got -1"),
         ({"motor.B": float("nan")}, r"motor\.B: expected .*got nan"),
         ({"rls.n": 2.5}, r"rls\.n: expected Integer, got 2\.5"),
+        ({"motor.B": True}, r"motor\.B: expected Real, got True"),
         ({"rls.n": 9}, r"rls\.n: expected .*8.* got 9"),
         ({"sigma": 1.0}, "sigma"),
         ([], "one joint or more"),

@@ -124,7 +124,8 @@ class Fmu:
             if value not in items:
                 raise ValueError(unknown(f"value of {self.name}.{name}", value, items))
             return items[value]
-        if isinstance(value, str):
+        is_flag = isinstance(value, bool) and variable.type != "Boolean"
+        if isinstance(value, str) or is_flag:
             raise ValueError(f"{self.name}.{name}: expected {variable.type}, got {value!r}")
         try:
             if variable.type == "Real":
