@@ -78,7 +78,7 @@ def torque(t: float) -> float:
 
 
 def run(with_estimate: bool) -> NDArray[np.float64]:
-    """One run; columns t [s], wanted, true and estimated stiffness [N.m/rad], tau_c [N.m]."""
+    """One run. Columns: t [s]; commanded, true and estimated stiffness [N.m/rad]; tau_c [N.m]."""
     plant = Plant({"spring.k_s": 0.85 * K_S, "initial.theta_c": 0.0})
     # The torque is exact here, but for noise: no gain error.
     estimator = sigmahat.Estimator(

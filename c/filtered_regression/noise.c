@@ -104,8 +104,8 @@ sh_real sh_noise_of_deformation(const sh_signals *signals)
     return signals->gain * counts_squared(signals) / 12;
 }
 
-/* N R = (gamma^2 B prior.B)^2 G V, where V is the mean of the squared fourth difference over 70, and of
- * 0.056 count^2/12 in samples in which the position changes.
+/* N R = (gamma^2 B prior.B)^2 G V. V is a mean over samples: of the squared fourth difference / 70, but of
+ * 0.056 (count^2 / 12) in a sample in which the position changes.
  */
 sh_real sh_noise_of_inertia(const sh_regression_state *state, const sh_parameters *p)
 {

@@ -61,8 +61,8 @@ static sh_last_row weighed_last(const sh_posterior *posterior, sh_real prior_B)
     return last;
 }
 
-/* D = 1 + I + N: information about the coefficient if all others are estimated, of which N is noise. The data
- * get the weight I^2 / (I + N + Q), Q = (0.2 G)^2, by a sample of negative weight (detail 14).
+/* D = 1 + I + N is the information about the coefficient if all others are estimated; N of it is noise. A sample
+ * of negative weight reduces the information of the data to I^2 / (I + N + Q), Q = (0.2 G)^2 (detail 14).
  */
 void sh_posterior_remove_noise(sh_posterior *posterior, sh_real prior_B, int i,
                                const sh_column_noise *noise)

@@ -140,7 +140,7 @@ static fmi2Status no_status(fmi2Component c, const char *function)
     if (instance == NULL) {
         return fmi2Error;
     }
-    sh_report(instance, SH_DISCARD, "%s: no information of this kind; no step is pending.",
+    sh_report(instance, SH_DISCARD, "%s: there is no such information, because no step is pending.",
               function);
     return fmi2Discard;
 }

@@ -53,7 +53,7 @@ def _limit(name: str, text: str) -> click.Option:
 @click.option(
     "--after",
     type=common.PATH,
-    help="Use what this log shows of the joint; CONFIG is its configuration.",
+    help="Log of the joint, which shows what its motion has to be; CONFIG belongs to this log.",
 )
 @common.out_option("Folder to write into.", "motion")
 @click.option("--joint", metavar="NAME", default="", help="Which of several joints of CONFIG.")

@@ -100,9 +100,10 @@ def _methods(seeds: int, jobs: int | None, out: Path) -> None:
         write(rows, seeds, folder / "compare.csv")
 
     common.answer(
-        f"MSREP [%] of both methods, and of FilteredRegression: sigma_std relative to the true "
-        f"stiffness and fraction of instants\nwithin 1.96 sigma_std, from {CALIBRATED:g} s on; "
-        f"motor data found at the end, true {TRUE['D_theta']:g} N.m.s/rad, {TRUE['B']:g} kg.m2.\n"
+        f"MSREP [%] of both methods. FilteredRegression from {CALIBRATED:g} s on: sigma_std\n"
+        "relative to the true stiffness, and fraction of the time in which the error is below\n"
+        "1.96 sigma_std. Estimated motor data at the end; the true ones are "
+        f"{TRUE['D_theta']:g} N.m.s/rad\nand {TRUE['B']:g} kg.m2. "
         f"Mean over {_counted(seeds)}. {MSREP_IN_WORDS}.\n\n"
         f"{table(rows)}\n\n"
         f"Figure (PNG, SVG) and CSV file are in {out.resolve()}",

@@ -240,7 +240,9 @@ def _setting(columns: Sequence[Column], ports: Mapping[str, Role]) -> dict[str, 
     measured = [each for each in motors if not each.meaning.reference]
     second = [each for each in measured if each.meaning.quantity == "position"]
     if len(second) == 1 and "theta" in ports:
-        return {"theta_c": Role(second[0], "a second motor, which the link does not follow")}
+        return {
+            "theta_c": Role(second[0], "position of a second motor; the link follows the first one")
+        }
     return {}
 
 

@@ -128,7 +128,7 @@ def summary(identified: Identified) -> str:
     if math.isfinite(identified.coherent):
         lines.append(
             f"above {identified.coherent:.2g} Hz the deformation is noise, "
-            "not caused by a torque; the bandwidth is below that"
+            "not caused by a torque; the bandwidth is chosen below this frequency"
         )
     return "\n".join(lines)
 

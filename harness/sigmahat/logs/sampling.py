@@ -107,7 +107,9 @@ def _sample(log: Log, configuration: Configuration, T: float) -> Samples:
                 "check its delay, and time.longest_gap"
             )
         if resampled is None:
-            raise LogError(f"port {name}: its column holds no number; remove it or name another")
+            raise LogError(
+                f"port {name}: its column holds no number; name another column, or remove the port"
+            )
         notes += _notes(name, resampled, T)
         values[:, i] = resampled.values
     names = tuple(configuration.ports)

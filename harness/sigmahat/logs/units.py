@@ -45,7 +45,9 @@ def factor(name: str, port: Port) -> float:
         return 1.0
     if port.unit == "counts":
         if target != "rad":
-            raise LogError(f"{where}: counts are an angle, expected a torque; use scale")
+            raise LogError(
+                f"{where}: unit counts is an angle, expected a torque; set scale instead of unit"
+            )
         return 2 * math.pi / _needed(where, port, "counts_per_turn", "counts")
     if target == "N.m" and _is(port.unit, "A"):
         return _in(where, port.unit, "A") * _needed(where, port, "torque_constant", port.unit)

@@ -35,7 +35,7 @@ class Contents:
     """All of a report."""
 
     title: str
-    lines: Sequence[str]  # lines below the title
+    lines: Sequence[str]  # of text, below the title
     tables: Sequence[TextTable]
     panels: Sequence[Panel]
     headline: str = ""  # the result in one line, above all lines
