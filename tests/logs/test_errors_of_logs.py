@@ -30,7 +30,7 @@ def test_file_cut_in_the_middle(suffix: str, shell: Shell) -> None:
         (b"%PDF-1.7\n\xff\xfe\x00", "expected CSV, Parquet"),
         (b"\xff\xfe\x41\x41, \xff", "text in UTF-16; convert it: iconv -f UTF-16"),
         (b"\x1f\x8b\x08\x00", "compressed with gzip; unpack it: gunzip --keep log.csv"),
-        (b"PK\x03\x04\x14\x00", "an Excel workbook or a ZIP archive; save the sheet as CSV"),
+        (b"PK\x03\x04\x14\x00", "an Excel workbook or a ZIP archive; save a workbook as CSV"),
         (b"just a letter\nto you\n", "names of several columns"),
         (b"0,1,2\n0.1,1,2\n", "names of the columns"),
         (b"t,theta,q,tau\n", "no rows"),
