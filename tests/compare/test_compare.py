@@ -3,7 +3,6 @@
 import csv
 import math
 from dataclasses import replace
-from functools import partial
 from itertools import product
 from pathlib import Path
 
@@ -15,13 +14,8 @@ from regression_joint import WITHOUT_MISFITS
 from sigmahat.compare import conditions
 from sigmahat.compare import table as labels
 from sigmahat.compare.conditions import JOINTS, METHODS, REGRESSION, Joint
-from sigmahat.compare.job import Row, compare, performances
+from sigmahat.compare.job import Row, compare
 from sigmahat.compare.table import table
-from sigmahat.fmi.instance import Value
-from sigmahat.paper.scenarios import against_the_plant, awas, estimator
-from sigmahat.runs.engine import measured, run_all
-from sigmahat.runs.metrics import mean_interval
-from sigmahat.runs.scenario import Scenario, Sine
 
 FRICTION = "r(0) = 70 mm, Coulomb friction 0.02 N.m"
 BOUNDS = {  # MSREP [%] by group and case, for 0.1, 0.3, 1, 3, 8 and 20 Hz
@@ -100,50 +94,6 @@ def test_start_up_with_exact_motor_data() -> None:
     unknown, nominal = compare([table1], range(1, 21), processes=2)
     assert unknown.error(REGRESSION) <= 2.5 * 0.247
     assert nominal.error(REGRESSION) <= 2.5 * 0.037
-
-
-def drawn(run: int, with_inertia: bool) -> Scenario:
-    """The AwAS at 0.3 to 8 Hz, and an estimator whose motor data have errors."""
-    rng = np.random.default_rng([4, run])
-    frequency = math.exp(rng.uniform(math.log(0.3), math.log(8.0)))
-    d, friction, b = rng.standard_normal(3) * (0.2, 0.02, 0.1)
-    plant = awas(0.030, Sine(0.3 if frequency < 5 else 0.5, frequency))
-    values: dict[str, Value] = {
-        "method": REGRESSION,
-        "rls.n": 3,
-        "motor.D_theta": 1e-3 / (1 + d),
-        "prior.D_theta": 0.2,
-        "prior.tau_coulomb": 0.02,
-        "prior.torque_gain": 0.0,  # that of the plant is exact
-    }
-    if with_inertia:
-        values |= {"motor.B": 2.3e-5 / (1 + b), "prior.B": 0.1}
-    start = {**plant.start, "motor.tau_coulomb": abs(friction)}
-    return Scenario(
-        name=f"drawn-{run}",
-        description="AwAS with friction and motor data drawn at random",
-        duration=15.0,
-        plant=replace(plant, start=start),
-        estimators={REGRESSION: replace(estimator(values), record=("sigma", "sigma_std"))},
-        comparisons=against_the_plant([REGRESSION]),
-        figures=(),
-    )
-
-
-@pytest.mark.parametrize("with_inertia", [False, True])
-@pytest.mark.slow("many runs, to see how often the truth is inside")
-def test_claims_the_right_uncertainty(with_inertia: bool) -> None:
-    """The truth lies within 1.96 sigma_std for 90 to 99 % of the time, as far as 20 runs show.
-
-    The share differs from run to run, and instants of one run are not independent. So the test is
-    of the interval of the mean over runs.
-    """
-    jobs = [partial(measured, drawn(k, with_inertia), k + 1, performances) for k in range(20)]
-    shares = [each[REGRESSION].inside for each in run_all(jobs, processes=2)]
-    inside, half_width = mean_interval(shares)
-    assert half_width < 8.0
-    assert inside + half_width >= 90.0
-    assert inside - half_width <= 99.0
 
 
 def test_printed_table(runs: list[list[Row]]) -> None:
