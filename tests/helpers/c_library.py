@@ -135,6 +135,12 @@ def compile_library(parent: Path, real: str, *flags: str) -> Library:
     return Library(folder, real)
 
 
+@cache
+def type_of_estimate(build: Path, real: str) -> np.dtype[Any]:
+    """The layout of `sh_estimate`, on every processor of the tests."""
+    return Library(build, real).dtype("sh_estimate")
+
+
 def covariance(P: Any) -> Array:
     """P = U D U' of a `sh_ud_factor` [size: P.size x P.size]. ud_factor.c says where U is."""
     size, U = P.size, np.zeros((P.size, P.size))

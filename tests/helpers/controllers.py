@@ -7,18 +7,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from c_sources import REPOSITORY
 from gate import need, need_of_environment
-
-OUTPUTS = (
-    *("sigma", "tau_e", "tau_e_residual", "theta_dot", "phi", "setPoint", "a", "rho", "epsilon"),
-    *("eta", "sigma_std", "D_theta_hat", "B_hat", "tau_coulomb_hat", "confident", "valid"),
-)
-"""The outputs that replay.c writes for each tick, in this order."""
 
 
 @dataclass(frozen=True)
@@ -83,9 +78,13 @@ def run(
 
 
 def replay(
-    tree: Path, measurements: NDArray[np.float64], configuration: str, folder: Path
-) -> dict[str, NDArray[np.float64]]:
-    """Runs a build of tests/replay. Returns the outputs of the estimator in each tick, by name."""
+    tree: Path,
+    measurements: NDArray[np.float64],
+    configuration: str,
+    folder: Path,
+    estimate: np.dtype[Any],
+) -> NDArray[np.void]:
+    """Runs a build of tests/replay. Returns the estimate of each tick, of this type."""
     measurements.astype("<f8").tofile(folder / "log")
     program, arguments = str(tree / "replay"), ["log", "out", configuration]
     command = [part for part in (tree / "emulator.txt").read_text().split(";") if part]
@@ -93,6 +92,6 @@ def replay(
         run(*command, program, "-append", " ".join(arguments), cwd=folder)
     else:
         run(*command, program, *arguments, cwd=folder)
-    rows = np.fromfile(folder / "out", "<f8").reshape(-1, len(OUTPUTS))
+    rows = np.fromfile(folder / "out", estimate)
     assert len(rows) == len(measurements)
-    return dict(zip(OUTPUTS, rows.T, strict=True))
+    return rows

@@ -2,8 +2,8 @@
  *
  * replay LOG OUT CONFIGURATION
  *
- * LOG holds the five measurements of each tick, OUT gets what the tick gave: doubles in the byte
- * order of the machine. CONFIGURATION is one letter, see configure().
+ * LOG holds the five measurements of each tick, doubles in the byte order of the machine. OUT gets the
+ * sh_estimate of each tick. CONFIGURATION is one letter, see configure().
  */
 #include <stdio.h>
 
@@ -55,29 +55,6 @@ static int configure(sh_parameters *p, char configuration)
     return 1;
 }
 
-/* Returns 0 if it fails. */
-static int write_outputs(const sh_estimate *e, FILE *out)
-{
-    const double given[] = {e->sigma,
-                            e->tau_e,
-                            e->tau_e_residual,
-                            e->theta_dot,
-                            e->phi,
-                            e->setPoint,
-                            e->a,
-                            e->rho,
-                            e->epsilon,
-                            e->eta[0][0],
-                            e->sigma_std,
-                            e->D_theta_hat,
-                            e->B_hat,
-                            e->tau_coulomb_hat,
-                            (double)e->confident,
-                            (double)e->valid};
-
-    return fwrite(given, sizeof given, 1, out) == 1;
-}
-
 int main(int count, char **arguments)
 {
     static sh_parameters parameters;
@@ -105,7 +82,7 @@ int main(int count, char **arguments)
         z.tau = (sh_real)log[3];
         z.tau_e_sensor = (sh_real)log[4];
         sh_estimator_tick(&estimator, &parameters, &z, &e);
-        if (!write_outputs(&e, out)) {
+        if (fwrite(&e, sizeof e, 1, out) != 1) {
             return 3;
         }
     }
