@@ -1,8 +1,7 @@
-"""Where the tests find what the build made; which tests take long, and why."""
+"""Where the tests find what the build made, and which tests run first."""
 
 import os
 import sys
-from collections import defaultdict
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -64,37 +63,15 @@ def site(build: Path) -> Path:
     return folder
 
 
-_LONG = 10.0  # [s] A test that takes longer says why: @pytest.mark.slow("reason")
-
-
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Sends the reason of a slow test along with its results, also from another process.
+    """Skips what the preset `complete` runs.
 
     In several processes, the files with slow tests come first: a long one at the end would leave
     the other processes without work.
     """
-    slow_files = set()
+    slow_files = {item.path for item in items if item.get_closest_marker("slow")}
     for item in items:
         if item.get_closest_marker("complete") and "SIGMAHAT_COMPLETE" not in os.environ:
             item.add_marker(pytest.mark.skip(reason="runs with SIGMAHAT_COMPLETE=1"))
-        for mark in item.iter_markers("slow"):
-            (reason,) = mark.args
-            item.user_properties.append(("slow", reason))
-            slow_files.add(item.path)
     if hasattr(config, "workerinput"):  # one of the processes of pytest-xdist
         items.sort(key=lambda item: item.path not in slow_files)
-
-
-def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
-    """Lists the tests that took long, each with its reason."""
-    seconds: dict[tuple[str, object], float] = defaultdict(float)
-    for reports in terminalreporter.stats.values():
-        for report in reports:
-            if isinstance(report, pytest.TestReport):
-                reason = dict(report.user_properties).get("slow", "NO REASON GIVEN")
-                seconds[report.nodeid, reason] += report.duration
-    long = sorted((-took, *test) for test, took in seconds.items() if took > _LONG)
-    if long:
-        terminalreporter.section(f"tests that took over {_LONG:g} s, and why")
-    for took, name, reason in long:
-        terminalreporter.line(f"{-took:6.0f} s  {name}: {reason}")
