@@ -384,19 +384,6 @@ static void step_twice(sequence *s)
     free(second);
 }
 
-static void choose_categories(sequence *s)
-{
-    static const char *const NAMES[] = {"logAll", "logEvents", "logStatusError",
-                                        "logStatusWarning"};
-    char text[TEXT];
-    const char *const categories[] = {NAMES[below(s, 4)],
-                                      seldom(s, 4) ? some_text(s, text) : NAMES[below(s, 4)]};
-    const int on = (int)below(s, 2);
-    const size_t n = below(s, 3);
-
-    fmi2SetDebugLogging(s->instance, on, n, seldom(s, 32) ? NULL : categories);
-}
-
 static void reset(sequence *s)
 {
     fmi_reset(s->instance);
@@ -491,11 +478,10 @@ static void call(sequence *s)
     static const struct {
         unsigned end; /* of its share, of 32 */
         void (*call)(sequence *);
-    } CALLS[] = {{1, reset},         {2, terminate},           {3, choose_categories},
-                 {4, set_up},        {5, exit_initialization}, {6, initialize},
-                 {8, some_integers}, {9, get_reals},           {10, step_twice},
-                 {13, use_states},   {21, set_some_reals},     {27, set_derivatives},
-                 {32, some_step}};
+    } CALLS[] = {
+        {2, reset},       {3, terminate},       {4, set_up},           {5, exit_initialization},
+        {6, initialize},  {8, some_integers},   {9, get_reals},        {10, step_twice},
+        {13, use_states}, {21, set_some_reals}, {27, set_derivatives}, {32, some_step}};
     const unsigned choice = below(s, 32);
     size_t i = 0;
 
