@@ -19,16 +19,12 @@ import sigmahat
 from controllers import run
 from recordings import one_seed
 from sigmahat.fmi.instance import Fmu, FmuError, Slave, opened
-from sigmahat.fmi.master import EstimatorFmu, simulate
+from sigmahat.fmi.master import simulate
 from sigmahat.paper.scenarios import scenario
 from sigmahat.runs.scenario import T
 
 PLANT = scenario("table1").plant
 RESIDUAL = scenario("table1").estimators["RESIDUAL"]
-
-
-def changed(start: dict[str, Any]) -> EstimatorFmu:
-    return replace(RESIDUAL, start={**RESIDUAL.start, **start})
 
 
 def test_fmpy_gives_the_same_estimate_from_the_recorded_measurements() -> None:
@@ -68,26 +64,14 @@ def test_inputs_are_linear_between_samples() -> None:
 
 
 def test_an_enumeration_is_recorded_by_the_names_of_its_items() -> None:
-    regression = replace(
-        changed({"method": "FilteredRegression"}), record=["sigma", "doubt", "confident"]
-    )
+    start = {**RESIDUAL.start, "method": "FilteredRegression"}
+    regression = replace(RESIDUAL, start=start, record=["sigma", "doubt", "confident"])
     paper = replace(RESIDUAL, record=["doubt"])
     recording = simulate(PLANT, {"regression": regression, "paper": paper}, T, 6000)
     doubt = recording.estimators["regression"]["doubt"]
     assert np.array_equal(doubt == "None", recording.estimators["regression"]["confident"] == 1)
     assert {"None", "NotExcited"} <= set(doubt)
     assert set(recording.estimators["paper"]["doubt"]) == {"NoClaim"}
-
-
-def test_a_recording_contains_units_and_parameters() -> None:
-    recording = simulate(PLANT, {"one": changed({"rls.kind": "Standard"})}, T, 1)
-    series = recording.estimators["one"]
-    assert series.units["sigma"] == "N.m/rad"
-    assert recording.plant.units["theta_dot"] == "rad/s"
-    assert series.parameters["rls.kind"] == "Standard"
-    assert series.parameters["rls.n"] == 6
-    assert series.parameters["motor.gamma"] == 50.0
-    assert recording.plant.parameters["initial.theta_c"] == PLANT.start["initial.theta_c"]
 
 
 @pytest.mark.parametrize("steps", [99, 250])
