@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from checked_logs import log_by_hand
 from foreign_joint import GEAR, Motion, T, joint
 from sigmahat.guessing.columns import Facts, interval, look_at, read_columns
 from sigmahat.guessing.guess import JointGuess, guess
@@ -130,16 +131,10 @@ def test_signs_and_zeros(m: Motion) -> None:
 def test_a_hand_on_the_link_leaves_the_sign_of_the_torque_open() -> None:
     """GIVEN a motor that only holds its position, with springs of its controller, WHEN the link is
     moved by hand THEN nobody is told a sign: the power of the torque has the other one there."""
-    t, B, D, K = T * np.arange(20_000), 8e-5, 8e-4, 600.0
-    w, amplitude = 2 * np.pi * np.array([[0.4], [1.1]]), np.array([[0.2], [0.05]])
-    theta = np.sum(amplitude * np.sin(w * t), axis=0)
-    velocity = np.sum(amplitude * w * np.cos(w * t), axis=0)
-    acceleration = np.sum(-amplitude * w**2 * np.sin(w * t), axis=0)
-    tau = -(10.0 * theta + 8.0 * velocity) / GEAR
-    q = theta + GEAR * (B * GEAR * acceleration + D * GEAR * velocity - tau) / K
-    assert np.mean(tau * velocity) < 0
-    port = only({"t": t, "theta": theta, "q": q, "tau": tau}).ports["tau"]
-    assert port.column == "tau" and port.sign == 1
+    log = dict(log_by_hand(0.05))
+    assert np.mean(log["current"] * np.gradient(log["motor_counts"])) < 0
+    port = only(log).ports["tau"]
+    assert port.column == "current" and port.sign == 1
     assert port.notes["sign"].startswith("CHECK: the log does not show it")
 
 
