@@ -10,23 +10,16 @@ from pathlib import Path
 
 import pytest
 
-from controllers import run
-from gate import need
+from controllers import HOST, cross_build
 
-EXAMPLE = Path(__file__).parents[2] / "examples" / "live"
 STIFFNESS = 600.0  # of robot.c [N.m/rad]
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="it needs timerfd")
 
 
 @pytest.fixture(scope="module")
-def program(build: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    cmake, folder = need("cmake"), tmp_path_factory.mktemp("live")
-    need("cc")
-    ninja = f"-DCMAKE_MAKE_PROGRAM={build / 'venv' / 'bin' / 'ninja'}"
-    run(cmake, "-S", EXAMPLE, "-B", folder, "-G", "Ninja", ninja)
-    run(cmake, "--build", folder)
-    return folder / "live"
+def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return cross_build("examples/live", HOST, "double", tmp_path_factory.mktemp("live")) / "live"
 
 
 def test_every_sample_is_sent(program: Path) -> None:
