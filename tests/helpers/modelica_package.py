@@ -1,13 +1,9 @@
-"""The Modelica package: its files, its classes as pymoca reads them, and models of it in rumoca."""
+"""The Modelica package: its files, and models of it in rumoca."""
 
 import tempfile
-from collections.abc import Iterator, Mapping
-from functools import cache
 from pathlib import Path
 from typing import Any
 
-import pymoca.ast
-import pymoca.parser
 import rumoca
 
 import sigmahat
@@ -26,40 +22,13 @@ NO_NOISE = "redeclare function drawNoise = Sigmahat.Plants.noNoise"
 """For rumoca, which calls no C."""
 
 
-@cache
-def classes() -> Mapping[str, pymoca.ast.Class]:
-    """All classes of the package by their names in it, such as "Plants.AwasPlant"."""
-    found: dict[str, pymoca.ast.Class] = {}
-    for file in FILES:
-        parts = file.relative_to(PACKAGE).with_suffix("").parts
-        path = [part for part in parts if part != "package"]
-        within = pymoca.parser.parse(file.read_text(encoding="utf-8")).classes["Sigmahat"]
-        for name in path:
-            within = within.classes[name]
-        if path:
-            found |= dict(_with_inner(".".join(path), within))
-    return found
-
-
-def _with_inner(name: str, of: pymoca.ast.Class) -> Iterator[tuple[str, pymoca.ast.Class]]:
-    yield name, of
-    for inner, each in of.classes.items():
-        yield from _with_inner(f"{name}.{inner}", each)
-
-
 def modification(**values: Any) -> str:
-    """A modification from values by dotted name: "motor(B=1), init(q=2)"."""
+    """A modification from values by their names in the FMU: "motor(B=1), init(q=2)"."""
     groups: dict[str, list[str]] = {}
     for name, value in values.items():
-        group, _, last = in_modelica(name).rpartition(".")
-        groups.setdefault(group, []).append(f"{last}={value!r}")
+        group, _, last = name.rpartition(".")
+        groups.setdefault(KEYWORDS.get(group, group), []).append(f"{last}={value!r}")
     return ", ".join(f"{group}({', '.join(each)})" for group, each in groups.items())
-
-
-def in_modelica(name: str) -> str:
-    """The name in the package of a parameter of an FMU."""
-    group, dot, last = name.partition(".")
-    return f"{KEYWORDS.get(group, group)}{dot}{last}"
 
 
 def compiled(text: str, model: str = "Test", package: Path = PACKAGE) -> rumoca.Model:

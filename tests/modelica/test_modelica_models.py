@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 import sigmahat
 from c_sources import REPOSITORY
 from fmi_runs import PLANTS
-from modelica_package import FILES, NO_NOISE, PACKAGE, classes, compiled, modification
+from modelica_package import FILES, NO_NOISE, PACKAGE, compiled, modification
 from sigmahat.export.templates import render, variables
 from sigmahat.fmi.master import Plant, simulate
 from sigmahat.fmi.series import Series
@@ -42,7 +42,9 @@ SPECIAL = {
 
 
 def outputs() -> list[str]:
-    tick = classes()["Estimators.Internal.tick"]
+    text = (PACKAGE / "Estimators" / "Internal.mo").read_text(encoding="utf-8")
+    within = pymoca.parser.parse(text).classes["Sigmahat"].classes["Estimators"]
+    tick = within.classes["Internal"].classes["tick"]
     return [name for name, each in tick.symbols.items() if "output" in each.prefixes]
 
 
