@@ -56,13 +56,8 @@ def test_find_package_finds_the_installed_library(
     prefix, real = installed
     shutil.copy(PROGRAM, tmp_path)
     (tmp_path / "CMakeLists.txt").write_text(PROJECT)
-    run(
-        *("cmake", "-S", tmp_path, "-B", tmp_path / "build", "-G", "Ninja"),
-        f"-DCMAKE_MAKE_PROGRAM={need_of_environment('ninja')}",
-        *("-DCMAKE_BUILD_TYPE=Release", f"-DCMAKE_PREFIX_PATH={prefix}"),
-    )
-    run("cmake", "--build", tmp_path / "build")
-    check(tmp_path / "build" / "consumer", build, real, tmp_path)
+    tree = cross_build(str(tmp_path), HOST, real, tmp_path, (f"CMAKE_PREFIX_PATH={prefix}",))
+    check(tree / "consumer", build, real, tmp_path)
 
 
 def test_pkg_config_describes_the_installed_library(

@@ -36,11 +36,12 @@ TARGETS = {
 
 @cache
 def cross_build(
-    project: str, target: Target, real: str, folder: Path, sizes: tuple[str, ...] = ()
+    project: str, target: Target, real: str, folder: Path, more: tuple[str, ...] = ()
 ) -> Path:
-    """Builds a project of the repository for a target, with SH_REAL = real; the build tree.
+    """Builds a project for a target, with SH_REAL = real. Returns the build tree.
 
-    sizes  each as SH_MAX_N=2; those of an estimator, see sigmahat.h
+    project  in the repository, or an absolute path
+    more     variables of CMake, as SH_MAX_N=2
     """
     for tool in target.tools:
         need(tool)
@@ -51,7 +52,7 @@ def cross_build(
         *(f"-DCMAKE_MAKE_PROGRAM={need_of_environment('ninja')}", f"-DSH_REAL={real}"),
         "-DCMAKE_BUILD_TYPE=Release",
         *(["--toolchain", str(toolchain)] if target.toolchain else []),
-        *(f"-D{size}" for size in sizes),
+        *(f"-D{each}" for each in more),
     )
     run("cmake", "--build", str(tree))
     return tree
