@@ -13,7 +13,7 @@ import pytest
 import sigmahat
 from c_library import MEASUREMENTS, Estimator, load
 from fmi_instance import OK
-from fmi_runs import ESTIMATORS, FMI2, PLANTS, SIGNALS, names
+from fmi_runs import ESTIMATORS, FMI2, OTHER_THAN_0, PLANTS, SIGNALS, names
 
 T = 1e-3  # s
 STEPS = 60
@@ -48,7 +48,7 @@ FAST = {"method": 2, "regression.bandwidth": 1900, "encoder.theta": 4e6}
 METHODS: dict[int, dict[str, float]] = {1: {}, 2: FAST}
 # Has its effect at the end of a pass, and not already at the next tick.
 LATER = "regression.drift"
-# The new value if 1.5 times the start value has too little effect ...
+# The new value if 1.5 times the start value has too little effect.
 CHANGED = {
     "modality": 2,
     "limit.relative_std": 1e-12,
@@ -58,26 +58,13 @@ CHANGED = {
     "link.mgl": 1.0,
     "contact.k": 1e3,
 }
-# ... and, by unit, if the start value is 0.
-CHANGED_FROM_0 = {
-    "1": 0.2,
-    "1/s": 1.0,
-    "N.m": 0.02,
-    "N.m.s/rad": 10.0,
-    "N.m/rad": 50.0,
-    "N.m/rad3": 1e4,
-    "N/m": 1e4,
-    "rad": 2e-4,
-    "rad/s": 0.1,
-    "s": 1e-3,
-}
 
 
 def other_value(name: str, variable: Any) -> float:
     """A value of a parameter with which it has another effect."""
     if name in CHANGED:
         return CHANGED[name]
-    return 1.5 * float(variable.start) or CHANGED_FROM_0[variable.unit]
+    return 1.5 * float(variable.start) or OTHER_THAN_0[variable.unit]
 
 
 SCALARS = [

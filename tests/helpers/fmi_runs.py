@@ -14,6 +14,12 @@ from fmi_instance import OK, REAL, SIZE, Instance, Instance3
 ESTIMATORS = ["StiffnessEstimator", "AntagonisticStiffnessEstimator"]
 PLANTS = ["AwasPlant", "FlexibleJointPlant", "AntagonisticVsaPlant", "RealJointPlant"]
 
+OTHER_THAN_0 = {
+    **{"1": 0.2, "1/s": 1.0, "s": 1e-3, "m": 0.05, "rad": 2e-4, "rad/s": 0.1, "N/m": 1e4},
+    **{"N.m": 0.02, "N.m/rad": 50.0, "N.m/rad3": 1e4, "N.m.s/rad": 10.0},
+}
+"""By unit, a value with an effect for a parameter that is 0 at the start."""
+
 # Inputs of the FMUs as functions of time: measurements that excite all parameters, and torques.
 SIGNALS: dict[str, Callable[[float], float]] = {
     **dict.fromkeys(("tau_e_sensor", "tau_e_sensor_1"), lambda t: 2 * math.sin(13 * t)),

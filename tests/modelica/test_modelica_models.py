@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 import sigmahat
 from c_sources import REPOSITORY
-from fmi_runs import PLANTS
+from fmi_runs import OTHER_THAN_0, PLANTS
 from modelica_package import FILES, NO_NOISE, PACKAGE, compiled, modification
 from sigmahat.export.templates import render, variables
 from sigmahat.fmi.master import Plant, simulate
@@ -218,13 +218,6 @@ def run(
     return Both(recording.plant, {n: np.asarray(result[f"p.{n}"])[rows] for n in names})
 
 
-OTHERWISE = {
-    **{"1": 0.05, "s": 1e-3, "m": 0.05, "rad": 2e-3, "rad/s": 0.5, "N/m": 300.0},
-    **{"N.m": 0.02, "N.m/rad": 5.0, "N.m/rad3": 100.0, "N.m.s/rad": 0.02},
-}
-"""Values by unit for what is 0 at the start, so that it has an effect."""
-
-
 def other_values(plant: str) -> dict[str, float]:
     """Every parameter of the plant other than it is, but for the noise."""
     changed = {}
@@ -232,7 +225,7 @@ def other_values(plant: str) -> dict[str, float]:
         if v.get("causality") == "parameter" and not name.startswith(("noise.", "signal.")):
             value = float(v[0].get("start"))
             factor = 1 + 0.1 * math.sin(number)
-            changed[name] = value * factor if value else OTHERWISE[v[0].get("unit")] * factor
+            changed[name] = value * factor if value else OTHER_THAN_0[v[0].get("unit")] * factor
     return changed
 
 
