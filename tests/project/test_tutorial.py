@@ -1,6 +1,5 @@
 """The tutorial: its log can be made again, its commands work, and it tells what comes out."""
 
-import json
 import re
 import runpy
 import shutil
@@ -10,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from command_line import in_process
+from command_line import Shell, working_in
 from recorded_logs import read_estimate
 
 REPOSITORY = Path(__file__).parents[2]
@@ -19,27 +18,21 @@ PAGE = (REPOSITORY / "docs" / "tutorial.md").read_text(encoding="utf-8")
 pytestmark = pytest.mark.slow("the commands of the page run on a log of 20 s")
 
 
-def sigmahat(arguments: list[str], folder: Path) -> str:
-    done = in_process(*arguments, cwd=folder)
-    assert done.returncode == 0, done.stderr
-    return str(done.stdout)
-
-
 @pytest.fixture(scope="module")
 def printed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     """Results of the commands of the page, by name, in a new folder."""
     folder = tmp_path_factory.mktemp("tutorial")
     shutil.copy(FILES / "knee.csv", folder)
-    commands = [line.split() for line in re.findall(r"^sigmahat (.*)$", PAGE, re.MULTILINE)]
-    init, identify, estimate, report = commands
-    sigmahat(init, folder)
-    results: dict[str, Any] = {"guess": (folder / "knee.toml").read_text(encoding="utf-8")}
-    shutil.copy(FILES / "knee.toml", folder)
-    results["folder"] = folder / "sigmahat-results" / "knee"
-    results["identify"] = json.loads(sigmahat([*identify, "--json"], folder))
-    results["estimate"] = json.loads(sigmahat([*estimate, "--json"], folder))
-    sigmahat(report, folder)
-    assert (folder / "sigmahat-results" / "knee" / "report.html").is_file()
+    init, identify, estimate, report = re.findall(r"^sigmahat (.*)$", PAGE, re.MULTILINE)
+    results: dict[str, Any] = {"folder": folder / "sigmahat-results" / "knee"}
+    with working_in(folder):
+        shell = Shell()
+        shell.run(init)
+        results["guess"] = Path("knee.toml").read_text(encoding="utf-8")
+        shutil.copy(FILES / "knee.toml", folder)
+        results["identify"], results["estimate"] = shell.json(identify), shell.json(estimate)
+        shell.run(report)
+    assert (results["folder"] / "report.html").is_file()
     return results
 
 
