@@ -80,7 +80,7 @@ static const char *input_name(size_t i)
     return VARIABLES[k].name;
 }
 
-/* The sine that is added to input i at time t. It is 0 at the start. */
+/* The sine that is added to input i at time t. At the start of the simulation this sine is 0. */
 static double sine(const sh_plant *plant, size_t i, double t)
 {
     static const double TURN = 6.283185307179586;

@@ -82,8 +82,8 @@ COUNTS = 30  # of both encoders for the expected deformation, at least
 LOG_NOISE: Range = (0.005, 0.03)  # by the peak torque
 DELAY: Range = (0.0, 2e-3)  # [s]
 LAG: Range = (2e-4, 6e-4)  # [s]
-COULOMB_KNOWN: Range = (1.0, 2.0)  # largest plausible by true
-MARGIN: Range = (1.05, 1.5)  # largest expected by largest, of deformation and torque
+COULOMB_KNOWN: Range = (1.0, 2.0)  # largest plausible value over true value
+MARGIN: Range = (1.05, 1.5)  # expected maximum over true maximum, of deformation and torque
 
 # What the drives do.
 FADE = 1.0  # [s] that a motion takes to begin

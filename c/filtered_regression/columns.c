@@ -495,7 +495,7 @@ static sh_real encoder_error(const sh_regression_state *state, const sh_paramete
     return state->stiffness_known ? sh_limited(error, SH_LARGEST_ENCODER_ERROR) : 0;
 }
 
-/* Entry of column i over its prior, or with it where the column has a filter of its own. */
+/* Entry of column i in the row. It still lacks the factor `prior`, unless the column has a filter of its own. */
 static sh_real entry_of(const sh_regression_state *state, const sh_parameters *p, int i)
 {
     const sh_filter_design *design = &state->signals.design;

@@ -192,7 +192,7 @@ sh_row_noise sh_noise_of_row(const sh_regression_state *state, const sh_paramete
 sh_real sh_noise_of_deformation(const sh_signals *signals);
 sh_real sh_noise_of_inertia(const sh_regression_state *state, const sh_parameters *p);
 
-/* Detail 12: whether the last row, one of the first ones, shows that the motor was not at rest at the start. */
+/* Whether the newest row shows that the motor was not at rest at the start (detail 12). */
 int sh_noise_contradicts_rest(sh_regression_state *state, const sh_parameters *p);
 
 /* ---- posterior.c: prior and data, which are weighted by the misfit ------------------------ */

@@ -154,7 +154,7 @@ def _side(column: Column, side: str) -> float:
 
 
 def _points(column: Column, side: str) -> float:
-    """Points of a column as the measured position of a side."""
+    """Score of a column as a candidate for the measured position of a side, motor or link."""
     meaning = column.meaning
     points = _side(column, side) + _QUANTITY * (meaning.quantity == "position")
     return points + _REFERENCE * meaning.reference + _COMPUTED * meaning.computed

@@ -289,7 +289,8 @@ def _sum(terms: Sequence[str]) -> str:
 
 
 def stiffness_rows(curve: Curve) -> Iterator[tuple[str, ...]]:
-    """Cells of STIFFNESS_HEAD: the stiffness in the middle and half way to either end."""
+    """Cells of STIFFNESS_HEAD: the stiffness in the middle of the deformations, and half
+    way from there to both ends."""
     for branch in curve.branches:
         for phi in characteristic(branch.reach):
             yield f"{phi:.4g}", *_stiffness(branch, phi)
