@@ -11,7 +11,6 @@ from sigmahat.identification.regression import (
     COULOMB_VELOCITY,
     MOTOR,
     WIDEST,
-    Equations,
     Fit,
     Form,
     Signals,
@@ -162,6 +161,10 @@ def _frictions(plain: Form) -> list[Form]:
     ]
 
 
+def _with_all_columns(form: Form) -> Form:
+    return replace(form, load_friction=True, stribeck=_STRIBECK, delay=True)
+
+
 def _variants(
     pieces: Sequence[Signals], T: float, gamma: float, form: Form, inertia: KnownInertia | None
 ) -> tuple[Variants, Variants | None]:
@@ -172,18 +175,15 @@ def _variants(
     The second ones are with B as known, if it is.
     """
     sensor = pieces[0].tau_e is not None
-    widest = replace(form, load_friction=True, stribeck=_STRIBECK, delay=True)
+    widest = _with_all_columns(form)
     whole, names = equations(pieces, T, gamma, widest), set(widest.names(sensor))
-
-    def system_of(each: Form) -> Equations:
-        """A part of the columns of `widest`, if no filter and no velocity differs."""
-        if replace(each, load_friction=True, stribeck=_STRIBECK, delay=True) == widest:
-            return whole.without(names.difference(each.names(sensor)))
-        return equations(pieces, T, gamma, each)
 
     def fits_of(each: Form) -> list[Fit]:
         """With B as unknown, then as known and at both ends of its interval."""
-        system = system_of(each)
+        if _with_all_columns(each) == widest:  # neither a filter nor v_s differs
+            system = whole.without(names.difference(each.names(sensor)))
+        else:
+            system = equations(pieces, T, gamma, each)
         ends = [] if inertia is None else [inertia.value * (1 + k * inertia.std) for k in _ENDS]
         return [fit(system), *(fit(system.known("B", B)) for B in ends)]
 

@@ -206,7 +206,8 @@ def rows(
     for begin in range(0, count - edge, step):
         first, last = max(begin - around, 0), min(begin + step + around, count)
         part = _part(piece, slice(2 * first, 2 * last))
-        halves = [_half(part, half, 2 * T, gamma, form, units) for half in (0, 1)]
+        velocity = _first(low_pass(part.theta, form.wide, T), T)
+        halves = [_half(part, velocity, half, 2 * T, gamma, form, units) for half in (0, 1)]
         y, X = (np.stack(each) for each in zip(*halves, strict=True))
         Z = np.empty_like(X)
         Z[0, 1:], Z[0, 0] = (X[1, 1:] + X[1, :-1]) / 2, X[1, 0]  # at the times of half 0
@@ -289,17 +290,25 @@ def signals_of(
 
 
 def _half(
-    s: Signals, first: int, h: float, gamma: float, form: Form, units: tuple[float, float]
+    s: Signals,
+    velocity: Array,
+    first: int,
+    h: float,
+    gamma: float,
+    form: Form,
+    units: tuple[float, float],
 ) -> tuple[Array, Array]:
-    """Response and regressors of every second sample, h [s] apart, from a first one on."""
+    """Response and regressors of every second sample, h [s] apart, from a first one on.
+
+    velocity  of theta at all samples [rad/s]
+    """
     kept = slice(first, None, 2)
     theta, tau = s.theta[kept], s.tau[kept]
     sensor = s.tau_e is not None
-    friction = _direction(s.theta, h / 2, form.wide, form.coulomb_velocity)[kept]
+    speed, friction = np.abs(velocity[kept]), _direction(velocity, form.coulomb_velocity)[kept]
     raw = [tau if s.tau_e is None else s.tau_e[kept] / gamma, friction]
     if form.load_friction:
         raw.append(np.abs(s.phi[kept] if s.tau_e is None else s.tau_e[kept]) * friction)
-    speed = np.abs(_first(low_pass(s.theta, form.wide, h / 2), h / 2))[kept]
     raw += [np.exp(-((speed / v) ** delta)) * friction for v, delta in form.stribeck]
     if form.delay:
         raw.append(np.gradient(tau, h))
@@ -321,20 +330,20 @@ def _half(
     return filtered[:, 0], np.column_stack([*motion, filtered[:, 1:]])
 
 
-def _direction(theta: Array, T: float, wide: float, v_s: float) -> Array:
+def _direction(velocity: Array, v_s: float) -> Array:
     """Mean of tanh(theta'/v_s) around each sample, for a velocity that is linear in between.
 
     A fast reversal happens between two samples: with the value at one of them its time would be
-    wrong by up to half a period. For the same reason theta has all samples here, T [s] apart.
+    wrong by up to half a period. For the same reason the velocity is that at all samples here.
     """
-    x = _first(low_pass(theta, wide, T), T) / v_s
+    x = velocity / v_s
     middle = np.concatenate([x[:1], (x[1:] + x[:-1]) / 2, x[-1:]])
     integral = np.logaddexp(middle, -middle)  # of tanh
     step = np.diff(middle)
     flat = np.abs(step) < 1e-3
     mean: Array = np.where(flat, np.tanh(x), np.diff(integral) / np.where(flat, 1.0, step))
     near = np.concatenate([mean[:1], mean, mean[-1:]])
-    wider: Array = (near[:-2] + 2 * mean + near[2:]) / 4  # around a sample, 2 T apart
+    wider: Array = (near[:-2] + 2 * mean + near[2:]) / 4  # for every second sample
     return wider
 
 
