@@ -25,6 +25,8 @@ static inline void check(int condition, const char *what)
 #define fmi_reset(instance) ((sh_status)FMI(Reset)(instance))
 #define fmi_free_instance(instance) FMI(FreeInstance)(instance)
 #define fmi_exit_initialization(instance) ((sh_status)FMI(ExitInitializationMode)(instance))
+#define fmi_set_debug_logging(instance, on, n, categories)                                         \
+    ((sh_status)FMI(SetDebugLogging)(instance, (on) != 0, n, categories))
 #define fmi_get_state(instance, state) ((sh_status)FMI_STATE(Get, )(instance, state))
 #define fmi_set_state(instance, state) ((sh_status)FMI_STATE(Set, )(instance, state))
 #define fmi_free_state(instance, state) ((sh_status)FMI_STATE(Free, )(instance, state))
@@ -61,11 +63,22 @@ static inline void *fmi_instantiate(const char *token)
     return fmi2Instantiate("test", fmi2CoSimulation, token, NULL, &callbacks, fmi2False, fmi2True);
 }
 
-/* Without a tolerance and a stop time, from t = 0 on. */
-static inline sh_status fmi_enter_initialization(void *instance)
+/* In FMI 2.0 two calls: if the first one fails, the second one is left out. */
+static inline sh_status fmi_enter_initialization(void *instance, int tolerance_defined,
+                                                 double tolerance, double start_time,
+                                                 int stop_time_defined, double stop_time)
 {
-    fmi2SetupExperiment(instance, fmi2False, 0.0, 0.0, fmi2False, 0.0);
-    return (sh_status)fmi2EnterInitializationMode(instance);
+    const fmi2Status status = fmi2SetupExperiment(instance, tolerance_defined, tolerance,
+                                                  start_time, stop_time_defined, stop_time);
+
+    return (sh_status)(status == fmi2OK ? fmi2EnterInitializationMode(instance) : status);
+}
+
+/* Time of the instance [s], or `otherwise` if it does not tell it now. */
+static inline double fmi_time(void *instance, double otherwise)
+{
+    fmi2GetRealStatus(instance, fmi2LastSuccessfulTime, &otherwise);
+    return otherwise;
 }
 
 /* Sets the time derivative of an input for the next step. FMI 3.0 has none. */
@@ -88,8 +101,9 @@ static inline sh_status fmi_set_slope(void *instance, uint32_t input, double slo
     ((sh_status)fmi3GetFloat64(instance, references, n, values, n))
 #define fmi_set_reals(instance, references, n, values)                                             \
     ((sh_status)fmi3SetFloat64(instance, references, n, values, n))
-#define fmi_enter_initialization(instance)                                                         \
-    ((sh_status)fmi3EnterInitializationMode(instance, fmi3False, 0.0, 0.0, fmi3False, 0.0))
+#define fmi_enter_initialization(instance, has_tolerance, tolerance, start, has_stop, stop)        \
+    ((sh_status)fmi3EnterInitializationMode(instance, (has_tolerance) != 0, tolerance, start,      \
+                                            (has_stop) != 0, stop))
 #define fmi_set_slope(instance, input, slope) ((void)(slope), SH_OK)
 
 static inline void fmi_ignore(fmi3InstanceEnvironment environment, fmi3Status status,
@@ -102,6 +116,14 @@ static inline void *fmi_instantiate(const char *token)
 {
     return fmi3InstantiateCoSimulation("test", token, NULL, fmi3False, fmi3True, fmi3False,
                                        fmi3False, NULL, 0, NULL, fmi_ignore, NULL);
+}
+
+static inline double fmi_time(void *instance, double otherwise)
+{
+    const fmi3ValueReference time = (fmi3ValueReference)sh_fmu_model.count;
+
+    fmi3GetFloat64(instance, &time, 1, &otherwise, 1);
+    return otherwise;
 }
 
 static inline sh_status fmi_do_step(void *instance, double t, double h)
@@ -123,7 +145,7 @@ static inline sh_status fmi_do_step(void *instance, double t, double h)
 /* Makes an instance ready for the first step, at t = 0. */
 static inline void fmi_initialize(void *instance)
 {
-    check(fmi_enter_initialization(instance) == SH_OK, "enter initialisation");
+    check(fmi_enter_initialization(instance, 0, 0.0, 0.0, 0, 0.0) == SH_OK, "enter initialisation");
     check(fmi_exit_initialization(instance) == SH_OK, "exit initialisation");
 }
 

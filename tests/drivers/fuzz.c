@@ -1,10 +1,10 @@
-/* Sequences of calls of FMI 2.0 with arguments of any kind, for libFuzzer, linked with one FMU.
+/* Sequences of FMI calls with arguments of any kind, for libFuzzer, linked with one FMU.
  *
  * The bytes of the fuzzer choose the calls, one after the other, until there are no more bytes. Most
  * arguments are valid, because else no sequence would get past its first calls. The sanitizers look
  * for undefined behaviour and leaks. This program checks that a refused step does not change the
  * time, that an accepted one ends where it should, that a restored state gives the same step bit for
- * bit, and that the logger receives valid arguments.
+ * bit, that damaged states and wrong GUIDs are refused, and that the logger receives valid arguments.
  */
 #include <float.h>
 #include <locale.h>
@@ -22,10 +22,13 @@ typedef struct {
     const uint8_t *next, *end; /* the remaining bytes of the fuzzer */
     void *instance;
     void *states[SLOTS];
-    double time; /* next communication point */
+    double stop_times[SLOTS]; /* of the states */
+    double time;              /* next communication point */
+    double stop_time;         /* infinite if there is none */
+    double longest_step;      /* of all steps so far */
+    double steps;             /* number of them */
+    int forged;               /* 1: a forged state was taken; its stop time is unknown */
 } sequence;
-
-static int allocations_left; /* until the allocator of the importer fails */
 
 int LLVMFuzzerInitialize(int *argc, char ***argv);
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
@@ -137,58 +140,20 @@ static void *memory(size_t size)
     return allocated;
 }
 
-static void *allocate(size_t count, size_t size)
+static void check_message(int status, const char *category, const char *message)
 {
-    return allocations_left-- > 0 ? calloc(count, size) : NULL;
-}
-
-static void logger(fmi2ComponentEnvironment environment, fmi2String name, fmi2Status status,
-                   fmi2String category, fmi2String message, ...)
-{
-    const char *c;
-
-    check(environment == (fmi2ComponentEnvironment)&allocations_left,
-          "the logger got another environment");
-    check(name != NULL, "the logger got no name");
-    check(status >= fmi2OK && status <= fmi2Error, "the logger got a status that is none");
+    check(status >= SH_OK && status <= SH_ERROR, "the logger got a status that is none");
     check(category != NULL && strncmp(category, "log", 3) == 0,
           "the logger got a strange category");
     check(message != NULL && message[0] != '\0', "the logger got no message");
     check(mbstowcs(NULL, message, 0) != (size_t)-1, "the logger got a message that is not UTF-8");
-    for (c = message; *c != '\0'; ++c) {
-        if (*c == '%') {
-            check(*++c == '%', "the logger got a message with a conversion");
-        }
-    }
 }
 
-static void *some_instance(sequence *s)
-{
-    const unsigned how = byte(s);
-    fmi2CallbackFunctions callbacks = {NULL, NULL, NULL, NULL, &allocations_left};
-    char text[TEXT];
-
-    allocations_left = seldom(s, 16) ? (int)below(s, 16) : INT32_MAX;
-    if (how & 1) {
-        callbacks.logger = logger;
-    }
-    if (how & 2) {
-        callbacks.allocateMemory = allocate;
-        callbacks.freeMemory = free;
-    }
-    return fmi2Instantiate(seldom(s, 4) ? some_text(s, text) : "fuzz",
-                           seldom(s, 64) ? fmi2ModelExchange : fmi2CoSimulation,
-                           seldom(s, 16) ? some_text(s, text) : sh_fmu_model.guid,
-                           how & 4 ? "file:///%s" : NULL, &callbacks, fmi2False,
-                           how & 8 ? fmi2True : fmi2False);
-}
-
-/* Time of the instance [s], or `otherwise` if it does not tell it now. */
-static double now(const sequence *s, double otherwise)
-{
-    fmi2GetRealStatus(s->instance, fmi2LastSuccessfulTime, &otherwise);
-    return otherwise;
-}
+#if SH_FMI == 2
+#include "fuzz_fmi2.h"
+#else
+#include "fuzz_fmi3.h"
+#endif
 
 /* Writes the right checksum, as anybody can who has the sources: FNV-1a over all bytes but its own. */
 static void sign(uint8_t *bytes, size_t size)
@@ -222,50 +187,97 @@ static void forge(sequence *s, uint8_t *bytes, size_t size)
     sign(bytes, size);
 }
 
-/* Serialises a state, maybe forges it, and reads it back in its place. */
-static void read_back(sequence *s, void **state)
+/* Damages a serialised state, in a block of its own of exactly the new size. */
+static uint8_t *damage(sequence *s, uint8_t *bytes, size_t *size)
 {
+    if (below(s, 2)) {
+        bytes[bits(s) % *size] ^= (uint8_t)(1 + below(s, 255));
+        return bytes;
+    }
+    *size = (below(s, 2) ? bits(s) : byte(s)) % *size;
+    bytes = realloc(bytes, *size > 0 ? *size : 1);
+    check(bytes != NULL, "out of memory");
+    return bytes;
+}
+
+/* Serialises a state, maybe damages or forges it, and reads it back in the place of the state. */
+static void serialise(sequence *s, unsigned slot)
+{
+    const unsigned choice = below(s, 5);
+    const int damaged = choice == 0, forged = choice > 2;
     void *copy = NULL;
+    sh_status status;
     uint8_t *bytes;
     size_t size = 0;
 
-    if (fmi_state_size(s->instance, *state, &size) != SH_OK) {
+    if (fmi_state_size(s->instance, s->states[slot], &size) != SH_OK) {
         return;
     }
     bytes = memory(size);
-    check(fmi_serialize_state(s->instance, *state, bytes, size) == SH_OK,
+    if (seldom(s, 16)) {
+        check(fmi_serialize_state(s->instance, s->states[slot], bytes, size - 1) == SH_ERROR,
+              "a state went into too little room");
+    }
+    check(fmi_serialize_state(s->instance, s->states[slot], bytes, size) == SH_OK,
           "a good state was not serialised");
-    if (below(s, 2)) {
+    if (damaged) {
+        bytes = damage(s, bytes, &size);
+    } else if (forged) {
         forge(s, bytes, size);
     }
-    if (fmi_deserialize_state(s->instance, bytes, size, &copy) == SH_OK) {
-        fmi_free_state(s->instance, state);
-        *state = copy;
+    status = fmi_deserialize_state(s->instance, bytes, size, &copy);
+    check(status == SH_ERROR || !damaged, "a spoilt state was taken");
+    if (status == SH_OK) {
+        fmi_free_state(s->instance, &s->states[slot]);
+        s->states[slot] = copy;
+    }
+    if (status == SH_OK && forged) {
+        s->stop_times[slot] = INFINITY; /* it may have another one, which nobody knows */
+        s->forged = 1;
     }
     free(bytes);
+}
+
+static void restore(sequence *s, unsigned slot)
+{
+    unsigned char *block = s->states[slot];
+
+    if (block == NULL) {
+        check(fmi_set_state(s->instance, block) == SH_ERROR, "no state was taken");
+        return;
+    }
+    if (seldom(s, 32)) {
+        unsigned char *place = block + below(s, 12); /* of what says whose state it is */
+        *place ^= 1;
+        check(fmi_set_state(s->instance, block) == SH_ERROR, "a foreign state was taken");
+        *place ^= 1;
+    }
+    check(fmi_set_state(s->instance, block) == SH_OK, "a good state was refused");
+    s->stop_time = s->stop_times[slot];
+    s->time = fmi_time(s->instance, s->time);
 }
 
 /* Saves, restores, frees or serialises one of the states. */
 static void use_states(sequence *s)
 {
-    void **state = &s->states[below(s, SLOTS)];
+    const unsigned slot = below(s, SLOTS);
 
     switch (below(s, 7)) {
     case 0:
     case 1:
-        fmi_get_state(s->instance, state);
+        if (fmi_get_state(s->instance, &s->states[slot]) == SH_OK) {
+            s->stop_times[slot] = s->stop_time;
+        }
         break;
     case 2:
     case 3:
-        check((fmi_set_state(s->instance, *state) == SH_OK) == (*state != NULL),
-              "a good state was refused, or none was taken");
-        s->time = now(s, s->time);
+        restore(s, slot);
         break;
     case 4:
-        fmi_free_state(s->instance, state);
+        fmi_free_state(s->instance, &s->states[slot]);
         break;
     default:
-        read_back(s, state);
+        serialise(s, slot);
     }
 }
 
@@ -335,14 +347,22 @@ static double short_enough(const sequence *s, double h)
 
 static sh_status checked_step(sequence *s, double t, double h)
 {
-    const double before = now(s, 0.0);
+    const double before = fmi_time(s->instance, 0.0);
     const sh_status status = fmi_do_step(s->instance, t, h);
-    const double after = now(s, 0.0);
+    const double after = fmi_time(s->instance, 0.0);
 
     check(status == SH_OK || status == SH_WARNING || status == SH_ERROR,
           "a step gave a status it should not know");
-    check(status == SH_ERROR ? before == after : h > 0.0 && after == t + h,
-          "a step did not end at its end, or a refused one moved the time");
+    if (status == SH_ERROR) {
+        check(before == after, "a refused step moved the time");
+        return status;
+    }
+    check(h > 0.0 && after == t + h, "a step did not end at its end");
+    s->longest_step = fmax(s->longest_step, h);
+    check(s->forged ||
+              after <= s->stop_time + 1e-3 * s->longest_step + DBL_EPSILON * fabs(t) * s->steps,
+          "a step went beyond the stop time by more than rounding");
+    s->steps += 1.0;
     return status;
 }
 
@@ -358,7 +378,7 @@ static void some_step(sequence *s)
         h = some_real(s, 1.0);
     }
     checked_step(s, t, short_enough(s, h));
-    s->time = now(s, s->time);
+    s->time = fmi_time(s->instance, s->time);
 }
 
 /* Runs a step, restores, and runs it again. */
@@ -377,33 +397,44 @@ static void step_twice(sequence *s)
         get_all(s, second);
         check(memcmp(first, second, sh_fmu_model.count * sizeof *first) == 0,
               "a step repeated gave another result");
-        s->time = now(s, s->time);
+        s->time = fmi_time(s->instance, s->time);
         fmi_free_state(s->instance, &state);
     }
     free(first);
     free(second);
 }
 
+static void choose_categories(sequence *s)
+{
+    static const char *const NAMES[] = {"logAll", "logEvents", "logStatusError",
+                                        "logStatusWarning"};
+    char text[TEXT];
+    const char *const categories[] = {NAMES[below(s, 4)],
+                                      seldom(s, 4) ? some_text(s, text) : NAMES[below(s, 4)]};
+    const int on = (int)below(s, 2);
+    const size_t n = below(s, 3);
+
+    fmi_set_debug_logging(s->instance, on, n, seldom(s, 32) ? NULL : categories);
+}
+
 static void reset(sequence *s)
 {
     fmi_reset(s->instance);
     s->time = 0.0;
+    s->stop_time = INFINITY;
 }
 
-/* Tells the experiment, and mostly enters initialisation mode. */
-static void set_up(sequence *s)
+static void enter_initialization(sequence *s)
 {
     const double start = seldom(s, 4) ? some_real(s, 3.0) : 0.0;
     const int tolerance_defined = (int)below(s, 2), stop_time_defined = seldom(s, 4);
     const double tolerance = some_real(s, 1e-6);
     const double stop_time = start + some_real(s, 0.03); /* some steps */
 
-    if (fmi2SetupExperiment(s->instance, tolerance_defined, tolerance, start, stop_time_defined,
-                            stop_time) == fmi2OK) {
+    if (fmi_enter_initialization(s->instance, tolerance_defined, tolerance, start,
+                                 stop_time_defined, stop_time) == SH_OK) {
         s->time = start;
-    }
-    if (!seldom(s, 8)) {
-        fmi2EnterInitializationMode(s->instance);
+        s->stop_time = stop_time_defined ? stop_time : INFINITY;
     }
 }
 
@@ -417,50 +448,9 @@ static void exit_initialization(sequence *s)
     fmi_exit_initialization(s->instance);
 }
 
-static void use_integers(sequence *s, int sets)
-{
-    uint32_t references[MAX_REFERENCES];
-    int values[MAX_REFERENCES];
-    fmi2String strings[MAX_REFERENCES] = {0};
-    const int boolean = (int)below(s, 2);
-    const unsigned types =
-        boolean ? SH_TYPE_BOOLEAN : (unsigned)SH_TYPE_INTEGER | SH_TYPE_ENUMERATION;
-    const size_t n = some_references(s, references, types, SH_ROLE_INPUT, SH_ROLE_TUNABLE);
-    size_t i;
-
-    for (i = 0; i < n; ++i) {
-        values[i] = some_integer(s);
-    }
-    if (sets) {
-        (boolean ? fmi2SetBoolean : fmi2SetInteger)(s->instance, references, n, values);
-    } else {
-        (boolean ? fmi2GetBoolean : fmi2GetInteger)(s->instance, references, n, values);
-    }
-    if (seldom(s, 32)) {
-        fmi2GetString(s->instance, references, n, strings);
-        fmi2SetString(s->instance, references, n, strings);
-    }
-}
-
 static void some_integers(sequence *s)
 {
     use_integers(s, (int)below(s, 2));
-}
-
-static void set_derivatives(sequence *s)
-{
-    uint32_t references[MAX_REFERENCES];
-    fmi2Integer orders[MAX_REFERENCES];
-    double values[MAX_REFERENCES];
-    const size_t n = some_references(s, references, SH_TYPE_REAL, SH_ROLE_INPUT,
-                                     seldom(s, 16) ? SH_ROLE_TUNABLE : SH_ROLE_INPUT);
-    size_t i;
-
-    for (i = 0; i < n; ++i) {
-        orders[i] = seldom(s, 32) ? some_integer(s) : 1;
-        values[i] = some_real(s, 1.0);
-    }
-    fmi2SetRealInputDerivatives(s->instance, references, n, seldom(s, 99) ? NULL : orders, values);
 }
 
 /* All calls up to the first step. */
@@ -469,7 +459,7 @@ static void initialize(sequence *s)
     reset(s);
     set_reals(s, SH_ROLE_GUESS, SH_ROLE_TUNABLE);
     use_integers(s, 1);
-    set_up(s);
+    enter_initialization(s);
     fmi_exit_initialization(s->instance);
 }
 
@@ -478,10 +468,19 @@ static void call(sequence *s)
     static const struct {
         unsigned end; /* of its share, of 32 */
         void (*call)(sequence *);
-    } CALLS[] = {
-        {2, reset},       {3, terminate},       {4, set_up},           {5, exit_initialization},
-        {6, initialize},  {8, some_integers},   {9, get_reals},        {10, step_twice},
-        {13, use_states}, {21, set_some_reals}, {27, set_derivatives}, {32, some_step}};
+    } CALLS[] = {{1, reset},
+                 {2, terminate},
+                 {3, choose_categories},
+                 {4, enter_initialization},
+                 {5, exit_initialization},
+                 {6, initialize},
+                 {8, some_integers},
+                 {9, get_reals},
+                 {10, step_twice},
+                 {13, use_states},
+                 {21, set_some_reals},
+                 {27, call_of_this_version},
+                 {32, some_step}};
     const unsigned choice = below(s, 32);
     size_t i = 0;
 
@@ -506,9 +505,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 
     s.next = data;
     s.end = data + size;
+    s.stop_time = INFINITY;
     s.instance = some_instance(&s);
     if (!seldom(&s, 2)) { /* most sequences begin with an initialised instance */
-        fmi_enter_initialization(s.instance);
+        fmi_enter_initialization(s.instance, 0, 0.0, 0.0, 0, 0.0);
         fmi_exit_initialization(s.instance);
     }
     while (s.next < s.end) {
