@@ -13,8 +13,8 @@
 /* Change of phi in a sample, over the finer resolution, below which phi rests [1]: less than a count. */
 #define SH_RESTS ((sh_real)0.25)
 /* Spacing of the rows over 1/w, and largest number of samples of a row [1]: with half, the same results. */
-#define SH_ROW_SPACING ((sh_real)1.8)
-#define SH_LONGEST_ROW 8
+#define SH_ROW_SPACING ((sh_real)3.0)
+#define SH_LONGEST_ROW 16
 /* End of the range of regression.decimation [1]. */
 #define SH_LARGEST_DECIMATION 64
 
