@@ -37,46 +37,55 @@ static sh_real largest_deformation_filtered_regression(const sh_parameters *p)
 
 /* ---- torque and stiffness at a point ------------------------------------------------------ */
 
-/* c' P c + (s_g d(c' beta)/dg)^2 + (share c' beta)^2, with the gain g of the torque (point 8) and the share by
- * which rounding makes the stiffness too small (point 5).
- */
-static sh_real variance_with_gain(const sh_parameters *p, const sh_combination *c,
-                                  sh_real too_small)
+static sh_variances variances_at(const sh_regression_state *state, const sh_parameters *p,
+                                 const sh_joint_point *at)
 {
-    return c->variance + sh_square(p->prior.torque_gain * c->value[SH_RIGHT_GAIN]) +
-           sh_square(too_small);
+    return sh_posterior_variances(&state->posterior, p->prior.B, at->F, at->dF,
+                                  state->columns.spring);
 }
 
-/* tau_e = F' beta, (21), and sigma = dF' beta, (23), with the curve rls.eta_0. Returns how uncertain
- * the stiffness is.
+/* tau_e = F' beta, (21), and sigma = dF' beta, (23), with the curve rls.eta_0. To the variances c' P c of both are added
+ * (s_g d(c' beta)/dg)^2 with the gain g of the torque (point 8), (share c' beta)^2 with the share by which rounding
+ * makes the stiffness too small (point 5), and what is not known beside a knee [(N.m/rad)2] (point 6).
  */
-static sh_combination evaluate_at(const sh_regression_state *state, const sh_parameters *p,
-                                  sh_joint_point *at, sh_point *point)
+static void evaluate_at(const sh_regression_state *state, const sh_parameters *p,
+                        const sh_joint_point *at, const sh_variances *variances, sh_real knees,
+                        sh_point *point)
 {
-    const sh_posterior *posterior = &state->posterior;
-    const sh_real knees = sh_columns_judge_knees(&state->columns, p, state->beta, at);
-    const sh_combinations found =
-        sh_posterior_combine(posterior, p->prior.B, at->F, at->dF, state->columns.spring);
-    const sh_combination *torque = &found.first, *stiffness = &found.second;
-    const sh_real share = state->rounding * posterior->weight * stiffness->variance;
+    const sh_columns *columns = &state->columns;
+    const sh_real share = state->rounding * state->posterior.weight * variances->second;
+    const sh_real gain = p->prior.torque_gain;
+    const sh_real torque = sh_sum_of_products(at->F, state->per_gain, columns->spring),
+                  stiffness = sh_sum_of_products(at->dF, state->per_gain, columns->spring);
 
-    point->tau_e = at->tau_nominal + torque->value[SH_RIGHT_Y];
-    point->sigma = at->sigma_nominal + stiffness->value[SH_RIGHT_Y];
-    point->tau_e_std = sh_std_deviation(variance_with_gain(p, torque, share * point->tau_e));
-    point->sigma_std =
-        sh_std_deviation(variance_with_gain(p, stiffness, share * point->sigma) + knees);
-    return *stiffness;
+    point->tau_e = sh_columns_torque(columns, at, state->beta);
+    point->sigma = sh_columns_stiffness(columns, at, state->beta);
+    point->tau_e_std = sh_std_deviation(variances->first + sh_square(gain * torque) +
+                                        sh_square(share * point->tau_e));
+    point->sigma_std = sh_std_deviation(variances->second + sh_square(gain * stiffness) +
+                                        sh_square(share * point->sigma) + knees);
+}
+
+/* The same for a deformation at rest. */
+static void evaluate_at_rest(const sh_regression_state *state, const sh_parameters *p, sh_real phi,
+                             sh_real set_point, sh_joint_point *at, sh_point *point)
+{
+    const sh_real at_rest[SH_WIDTHS] = {0};
+    sh_variances variances;
+    sh_real knees;
+
+    sh_joint_point_at(at, &state->columns, p, 0, 0, phi, set_point, at_rest);
+    knees = sh_columns_judge_knees(&state->columns, p, state->beta, at);
+    variances = variances_at(state, p, at);
+    evaluate_at(state, p, at, &variances, knees, point);
 }
 
 static void evaluate_filtered_regression(const sh_estimator *estimator, const sh_parameters *p,
                                          sh_real phi, sh_real set_point, sh_point *point)
 {
-    const sh_regression_state *state = &estimator->method.regression;
-    const sh_real at_rest[SH_WIDTHS] = {0};
     sh_joint_point at;
 
-    sh_joint_point_at(&at, &state->columns, p, 0, 0, phi, set_point, at_rest);
-    (void)evaluate_at(state, p, &at, point);
+    evaluate_at_rest(&estimator->method.regression, p, phi, set_point, &at, point);
 }
 
 /* ---- report ------------------------------------------------------------------------------- */
@@ -127,7 +136,7 @@ static void read_coefficients(const sh_regression_state *state, const sh_paramet
 }
 
 /* Why the estimate is not confident. The misfit already widens sigma_std, so it has no limit of its own. */
-static int doubt_of(const sh_regression_state *state, const sh_parameters *p, const sh_real *sum,
+static int doubt_of(const sh_regression_state *state, const sh_parameters *p,
                     const sh_estimate *estimate)
 {
     const sh_real phi = sh_fabs(estimate->phi);
@@ -139,11 +148,11 @@ static int doubt_of(const sh_regression_state *state, const sh_parameters *p, co
     if (phi > SH_LEAST_LIMIT * p->range.phi && phi > largest_deformation_filtered_regression(p)) {
         doubt = SH_DOUBT_OUT_OF_RANGE;
     }
-    if (sh_fabs(sum[SH_COLUMN_VISCOUS]) > SH_OUTSIDE_PRIOR * p->prior.D_theta ||
-        1 + sum[SH_COLUMN_VISCOUS] < -SH_BELOW_ZERO * state->friction_std) {
+    if (sh_fabs(state->viscous) > SH_OUTSIDE_PRIOR * p->prior.D_theta ||
+        1 + state->viscous < -SH_BELOW_ZERO * state->friction_std) {
         doubt = SH_DOUBT_FRICTION;
     }
-    if (sh_fabs(sum[SH_COLUMN_INERTIA]) > SH_OUTSIDE_PRIOR * p->prior.B) {
+    if (sh_fabs(state->inertia) > SH_OUTSIDE_PRIOR * p->prior.B) {
         doubt = SH_DOUBT_INERTIA;
     }
     if (estimate->sigma < 0) {
@@ -155,53 +164,57 @@ static int doubt_of(const sh_regression_state *state, const sh_parameters *p, co
     return doubt;
 }
 
-/* Sets the outputs that follow from the coefficients and from their combination for the stiffness. */
-static void report_coefficients(const sh_regression_state *state, const sh_parameters *p,
-                                const sh_joint_point *at, const sh_combination *stiffness,
-                                sh_estimate *estimate)
+/* Sets the outputs that follow from the coefficients, and from the stiffness in estimate. */
+static void report_coefficients(sh_regression_state *state, const sh_parameters *p,
+                                const sh_joint_point *at, sh_estimate *estimate)
 {
-    const sh_real sigma = sh_fabs(estimate->sigma);
     sh_real sum[SH_COLUMN_KINDS] = {0}, turning;
 
     read_coefficients(state, p, at, sum, estimate);
     turning = sh_sqrt(sh_square(sum[SH_COLUMN_SIN_Q]) + sh_square(sum[SH_COLUMN_COS_Q]));
-    estimate->sigma_per_gain =
-        sigma > 0 ? sh_limited(stiffness->value[SH_RIGHT_GAIN] / sigma, SH_LARGEST_OUTPUT) : 0;
-    estimate->D_theta_hat = p->motor.D_theta * (1 + sum[SH_COLUMN_VISCOUS]);
-    estimate->B_hat = p->motor.B * (1 + sum[SH_COLUMN_INERTIA]);
+    state->viscous = sum[SH_COLUMN_VISCOUS];
+    state->inertia = sum[SH_COLUMN_INERTIA];
+    estimate->D_theta_hat = p->motor.D_theta * (1 + state->viscous);
+    estimate->B_hat = p->motor.B * (1 + state->inertia);
     estimate->tau_coulomb_hat = sum[SH_COLUMN_COULOMB];
     estimate->bias_hat = sum[SH_COLUMN_BIAS];
     estimate->damping_hat = sum[SH_COLUMN_DAMPING];
     estimate->load_friction_hat = sum[SH_COLUMN_LOAD] + sum[SH_COLUMN_DRIVE];
     estimate->eccentric_hat =
-        turning > 0 ? turning / sh_fmax(sigma, turning) : 0; /* at most 1 rad */
+        turning > 0 ? turning / sh_fmax(sh_fabs(estimate->sigma), turning) : 0; /* at most 1 rad */
     estimate->delay_hat = sum[SH_COLUMN_DELAY];
     estimate->hysteresis_hat = sum[SH_COLUMN_HYSTERESIS];
-    estimate->change_age = state->history.change_age;
-    estimate->misfit = sh_sqrt(state->misfit);
-    estimate->doubt = doubt_of(state, p, sum, estimate);
 }
 
-/* Sets all outputs, and what the next row depends on. Returns 0, and sets none, if torque or stiffness
- * overflow.
+/* Sets all outputs, and what the next row depends on. Returns 0, and sets none, if a number overflows. The variances
+ * at a point are as much work as a row, so they are computed as often (detail 16).
  *
  * settled  whether the filters have settled
+ * is_new   whether the coefficients are others than in the last tick
  */
 static int report(sh_regression_state *state, const sh_parameters *p, sh_joint_point *at, sh_real y,
-                  int settled, sh_estimate *estimate)
+                  int settled, int is_new, sh_estimate *estimate)
 {
     const sh_signals *signals = &state->signals;
+    const sh_real knees = sh_columns_judge_knees(&state->columns, p, state->beta, at);
+    const sh_real gain = sh_sum_of_products(at->dF, state->per_gain, state->columns.spring);
     sh_point point;
-    const sh_combination stiffness = evaluate_at(state, p, at, &point);
 
-    if (!isfinite(point.sigma) || !isfinite(point.tau_e) || !isfinite(stiffness.variance) ||
-        !isfinite(stiffness.value[SH_RIGHT_GAIN])) {
+    if (is_new) {
+        state->variances = variances_at(state, p, at);
+    }
+    evaluate_at(state, p, at, &state->variances, knees, &point);
+    if (!isfinite(point.sigma) || !isfinite(point.tau_e) || !isfinite(state->variances.second) ||
+        !isfinite(gain)) {
         return 0;
     }
     estimate->sigma = point.sigma;
     estimate->sigma_std = point.sigma_std;
     estimate->tau_e = point.tau_e;
     estimate->tau_e_std = point.tau_e_std;
+    estimate->sigma_per_gain = sh_fabs(point.sigma) > 0
+                                   ? sh_limited(gain / sh_fabs(point.sigma), SH_LARGEST_OUTPUT)
+                                   : 0;
     estimate->tau_e_residual = y;
     estimate->phi = at->phi;
     estimate->theta_dot =
@@ -209,12 +222,17 @@ static int report(sh_regression_state *state, const sh_parameters *p, sh_joint_p
     estimate->a = settled ? 1 : 0;
     estimate->rho = state->row.rho;
     estimate->epsilon = state->row.epsilon;
-    report_coefficients(state, p, at, &stiffness, estimate);
+    estimate->change_age = state->history.change_age;
+    estimate->misfit = sh_sqrt(state->misfit);
+    if (is_new) {
+        report_coefficients(state, p, at, estimate);
+    }
+    estimate->doubt = doubt_of(state, p, estimate);
     state->modality = p->modality;
     state->y = y - estimate->epsilon;
     state->sigma = point.sigma;
     state->delay = sh_limited(estimate->delay_hat, SH_LARGEST_DELAY * p->prior.delay);
-    state->stiffness_known = sh_sqrt(stiffness.variance) < SH_KNOWN_STIFFNESS * point.sigma;
+    state->stiffness_known = sh_sqrt(state->variances.second) < SH_KNOWN_STIFFNESS * point.sigma;
     return 1;
 }
 
@@ -225,7 +243,6 @@ static void start_filtered_regression(sh_estimator *estimator, const sh_paramete
     sh_regression_state *state = &estimator->method.regression;
     sh_joint_point at;
     sh_point point;
-    sh_combination stiffness;
 
     state->modality = p->modality;
     sh_columns_start(&state->columns, p);
@@ -235,11 +252,12 @@ static void start_filtered_regression(sh_estimator *estimator, const sh_paramete
     sh_change_start(state);
     state->row.tick = state->signals.decimation;
     sh_refit_start(state, p);
-    sh_joint_point_at(&at, &state->columns, p, 0, 0, 0, p->setPoint.offset, state->history.stop);
-    stiffness = evaluate_at(state, p, &at, &point);
+    evaluate_at_rest(state, p, 0, p->setPoint.offset, &at, &point);
     estimate->sigma_std = point.sigma_std;
     estimate->tau_e_std = point.tau_e_std;
-    report_coefficients(state, p, &at, &stiffness, estimate);
+    report_coefficients(state, p, &at, estimate);
+    estimate->misfit = sh_sqrt(state->misfit);
+    estimate->doubt = doubt_of(state, p, estimate);
 }
 
 /* ---- tick --------------------------------------------------------------------------------- */
@@ -340,7 +358,7 @@ static int use_row(sh_regression_state *state, const sh_parameters *p)
     share = sh_posterior_take(&state->posterior, row->x, size, row->w); /* 5. Update. */
     row->rho = share > 0 ? sh_limited((1 - share) / share, SH_LARGEST_OUTPUT) : SH_LARGEST_OUTPUT;
     update_noise(state, p, &left, row->w);
-    sh_posterior_estimate(&state->posterior, p->prior.B, state->beta, size);
+    sh_estimate_coefficients(state, p);
     row->tick = 0;
     return 1;
 }
@@ -373,16 +391,16 @@ static int first_step(int tick, int ticks)
 }
 
 /* The steps are spread over the ticks until the next row. The refit advances in ticks in which neither the data
- * nor the blocks take a row, if there are at least three.
+ * nor the blocks take a row, if there are at least three. Returns 1 if the refit changed the estimate.
  */
-static void take_steps(sh_regression_state *state, const sh_parameters *p)
+static int take_steps(sh_regression_state *state, const sh_parameters *p)
 {
     const int ticks = state->signals.decimation > 1 ? state->signals.decimation - 1 : 1;
     const int tick = state->row.tick;
     int is_busy, step;
 
     if (tick < 0 || tick >= ticks) { /* all steps are done */
-        return;
+        return 0;
     }
     state->row.tick = tick + 1;
     is_busy = first_step(tick, ticks) < 2 || is_block_full(&state->blocks);
@@ -390,9 +408,7 @@ static void take_steps(sh_regression_state *state, const sh_parameters *p)
         take_step(state, p, step);
         is_busy = is_busy || is_block_full(&state->blocks);
     }
-    if (!is_busy || ticks < 3) {
-        sh_refit_advance(state, p);
-    }
+    return (!is_busy || ticks < 3) && sh_refit_advance(state, p);
 }
 
 /* Waits until the filters have settled. A block that is not full is dropped: it would contain rows from both
@@ -430,7 +446,7 @@ static int tick_filtered_regression(sh_estimator *estimator, const sh_parameters
 {
     sh_regression_state *state = &estimator->method.regression;
     const sh_history before = state->history;
-    int settled, complete;
+    int settled, complete, is_new;
     sh_joint_point at;
     sh_real y;
 
@@ -455,14 +471,15 @@ static int tick_filtered_regression(sh_estimator *estimator, const sh_parameters
     if (complete && !use_row(state, p)) { /* 3. to 5. Weigh it, predict it, and update. */
         return refuse(state, &before);
     }
+    is_new = complete || !settled; /* before the filters have settled, because the deformation moves */
     if (!complete || state->signals.decimation == 1) {
-        take_steps(state, p); /* 6. Data, misfit, forgetting, choice of columns. */
+        is_new |= take_steps(state, p); /* 6. Data, misfit, forgetting, choice of columns. */
     }
     if (!settled) {
         state->row.epsilon = state->row.rho = 0;
         (void)memset(&state->mean, 0, sizeof state->mean); /* the filters add every sample */
     }
-    return report(state, p, &at, y, settled, estimate) ? 1 : refuse(state, &before); /* 7. */
+    return report(state, p, &at, y, settled, is_new, estimate) ? 1 : refuse(state, &before); /* 7. */
 }
 
 const sh_method sh_filtered_regression = {

@@ -117,18 +117,19 @@ sh_real sh_sum_of_products(const sh_real *a, const sh_real *b, int count)
 }
 
 /* beta_i = z_i - sum over j > i of U_ij beta_j */
-void sh_information_solve(const sh_information *a, const sh_last_row *last, sh_real *beta)
+void sh_information_solve(const sh_information *a, const sh_last_row *last, int right,
+                          sh_real *beta)
 {
     const int size = a->size;
     const sh_real *row = a->U + row_offset(size, size - 1);
     int i;
 
-    beta[size - 1] = last->z[SH_RIGHT_Y];
+    beta[size - 1] = last->z[right];
     for (i = size - 2; i >= 0; --i) {
         const int count = size - 1 - i;
 
         row -= count + SH_RIGHT_SIDES;
-        beta[i] = row[count + SH_RIGHT_Y] - sh_sum_of_products(row, beta + i + 1, count);
+        beta[i] = row[count + right] - sh_sum_of_products(row, beta + i + 1, count);
     }
 }
 
@@ -144,21 +145,13 @@ static void subtract(sh_real *restrict a, sh_real *restrict b, const sh_real *re
     }
 }
 
-/* Adds the part of one row, with the entry v of U'^-1 c. */
-static void add_row(sh_combination *sum, sh_real v, sh_real D, const sh_real *z)
-{
-    sum->variance += v / D * v; /* in single precision, v^2 may overflow where D is as large */
-    sum->value[SH_RIGHT_GAIN] += v * z[SH_RIGHT_GAIN];
-    sum->value[SH_RIGHT_Y] += v * z[SH_RIGHT_Y];
-}
-
-/* v = U'^-1 c: c' beta = v' z, and its variance is the sum of v_i^2 / D_i. */
-sh_combinations sh_information_combine(const sh_information *a, const sh_last_row *last,
-                                       sh_real *first, sh_real *second)
+/* v = U'^-1 c: the variance is the sum of v_i^2 / D_i. In single precision, v^2 may overflow where D is as large. */
+sh_variances sh_information_variances(const sh_information *a, sh_real last_D, sh_real *first,
+                                      sh_real *second)
 {
     const int end = a->size - 1;
     const sh_real *row = a->U;
-    sh_combinations found = {{{0, 0}, 0}, {{0, 0}, 0}};
+    sh_variances found = {0, 0};
     int i;
 
     for (i = 0; i < end; ++i) {
@@ -167,13 +160,13 @@ sh_combinations sh_information_combine(const sh_information *a, const sh_last_ro
 
         if (sh_fabs(v) > 0 || sh_fabs(w) > 0) {
             subtract(first + i + 1, second + i + 1, row, count, v, w);
-            add_row(&found.first, v, a->D[i], row + count);
-            add_row(&found.second, w, a->D[i], row + count);
+            found.first += v / a->D[i] * v;
+            found.second += w / a->D[i] * w;
         }
         row += count + SH_RIGHT_SIDES;
     }
-    add_row(&found.first, first[end], last->D, last->z);
-    add_row(&found.second, second[end], last->D, last->z);
+    found.first += first[end] / last_D * first[end];
+    found.second += second[end] / last_D * second[end];
     return found;
 }
 

@@ -56,22 +56,17 @@ typedef struct {
 sh_last_row sh_information_last(const sh_information *a);
 void sh_information_set_last(sh_information *a, const sh_last_row *last);
 
-/* The estimate beta [size: size] of all parameters for y, with another last row. */
-void sh_information_solve(const sh_information *a, const sh_last_row *last, sh_real *beta);
+/* The estimate beta [size: size] of all parameters for a right-hand side, SH_RIGHT_GAIN or SH_RIGHT_Y, with another
+ * last row.
+ */
+void sh_information_solve(const sh_information *a, const sh_last_row *last, int right,
+                          sh_real *beta);
 
-/* A combination c' beta. */
-typedef struct {
-    sh_real value[SH_RIGHT_SIDES]; /* for both right-hand sides */
-    sh_real variance;              /* c' (U' D U)^-1 c */
-} sh_combination;
-
-typedef struct {
-    sh_combination first, second;
-} sh_combinations;
-
-/* Two combinations [size: size], which are overwritten, with another last row. */
-sh_combinations sh_information_combine(const sh_information *a, const sh_last_row *last,
-                                       sh_real *first, sh_real *second);
+/* Variances c' (U' D U)^-1 c of two combinations c' beta [size: size], which are overwritten. last_D is the entry of D of
+ * another last row.
+ */
+sh_variances sh_information_variances(const sh_information *a, sh_real last_D, sh_real *first,
+                                      sh_real *second);
 
 /* a' b [size: count], in four sums that do not wait for each other. */
 sh_real sh_sum_of_products(const sh_real *a, const sh_real *b, int count);

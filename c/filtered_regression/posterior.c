@@ -69,14 +69,13 @@ void sh_posterior_remove_noise(sh_posterior *posterior, sh_real prior_B, int i,
 {
     const sh_last_row last = weighed_last(posterior, prior_B);
     const sh_real all = noise->information * posterior->weight;
-    const int size = posterior->information.size;
+    const sh_information *a = &posterior->information;
     sh_real unit[SH_MAX_COLUMNS] = {0}, none[SH_MAX_COLUMNS] = {0}, row[SH_MAX_ROW] = {0};
+    sh_real beta[SH_MAX_COLUMNS], per_gain[SH_MAX_COLUMNS];
     sh_real G = noise->gain * posterior->weight, D, N, I, Q, lost, less;
-    sh_combination found;
 
     unit[i] = row[i] = 1;
-    found = sh_information_combine(&posterior->information, &last, unit, none).first;
-    D = 1 / found.variance;
+    D = 1 / sh_information_variances(a, last.D, unit, none).first;
     if (!(all > 0) || !(D > 1) || !(D <= SH_LARGE)) {
         return;
     }
@@ -89,18 +88,21 @@ void sh_posterior_remove_noise(sh_posterior *posterior, sh_real prior_B, int i,
     if (!(less > 0)) {
         return;
     }
-    row[size + SH_RIGHT_GAIN] = (G + lost * (D * found.value[SH_RIGHT_GAIN] - G)) / less;
-    row[size + SH_RIGHT_Y] = lost * D * found.value[SH_RIGHT_Y] / less;
+    sh_information_solve(a, &last, SH_RIGHT_GAIN, per_gain);
+    sh_information_solve(a, &last, SH_RIGHT_Y, beta);
+    row[a->size + SH_RIGHT_GAIN] = (G + lost * (D * per_gain[i] - G)) / less;
+    row[a->size + SH_RIGHT_Y] = lost * D * beta[i] / less;
     (void)sh_information_take(&posterior->information, row, -less);
 }
 
-void sh_posterior_estimate(const sh_posterior *posterior, sh_real prior_B, sh_real *beta, int size)
+void sh_posterior_estimate(const sh_posterior *posterior, sh_real prior_B, int right, sh_real *beta,
+                           int size)
 {
     const sh_last_row last = weighed_last(posterior, prior_B);
     sh_real own[SH_MAX_COLUMNS] = {0};
     int i;
 
-    sh_information_solve(&posterior->information, &last, own);
+    sh_information_solve(&posterior->information, &last, right, own);
     for (i = 0; i < size; ++i) {
         beta[i] = 0;
     }
@@ -109,10 +111,10 @@ void sh_posterior_estimate(const sh_posterior *posterior, sh_real prior_B, sh_re
     }
 }
 
-sh_combinations sh_posterior_combine(const sh_posterior *posterior, sh_real prior_B,
-                                     const sh_real *first, const sh_real *second, int count)
+sh_variances sh_posterior_variances(const sh_posterior *posterior, sh_real prior_B,
+                                    const sh_real *first, const sh_real *second, int count)
 {
-    const sh_last_row last = weighed_last(posterior, prior_B);
+    const sh_real last_D = weighed_last(posterior, prior_B).D;
     sh_real own_first[SH_MAX_COLUMNS] = {0}, own_second[SH_MAX_COLUMNS] = {0};
     int i;
 
@@ -124,11 +126,11 @@ sh_combinations sh_posterior_combine(const sh_posterior *posterior, sh_real prio
             own_second[i] = second[of_data];
         }
     }
-    return sh_information_combine(&posterior->information, &last, own_first, own_second);
+    return sh_information_variances(&posterior->information, last_D, own_first, own_second);
 }
 
 sh_real sh_posterior_variance(const sh_posterior *posterior, sh_real prior_B, const sh_real *c,
                               int count)
 {
-    return sh_posterior_combine(posterior, prior_B, c, c, count).first.variance;
+    return sh_posterior_variances(posterior, prior_B, c, c, count).first;
 }

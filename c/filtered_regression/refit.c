@@ -148,17 +148,26 @@ static void remove_noise(sh_regression_state *state, const sh_parameters *p)
     }
 }
 
-/* All rows have been taken. */
-static void end_refit(sh_regression_state *state, const sh_parameters *p)
+void sh_estimate_coefficients(sh_regression_state *state, const sh_parameters *p)
+{
+    const int size = state->columns.size;
+
+    sh_posterior_estimate(&state->posterior, p->prior.B, SH_RIGHT_GAIN, state->per_gain, size);
+    sh_posterior_estimate(&state->posterior, p->prior.B, SH_RIGHT_Y, state->beta, size);
+}
+
+/* All rows have been taken. Returns 1 if the estimate is another one now. */
+static int end_refit(sh_regression_state *state, const sh_parameters *p)
 {
     if (state->refit.trial != 0) {
         decide_about_group(state);
-        return;
+        return 0;
     }
     state->posterior = state->refit.posterior;
     state->change.following = 0;
     remove_noise(state, p);
-    sh_posterior_estimate(&state->posterior, p->prior.B, state->beta, state->columns.size);
+    sh_estimate_coefficients(state, p);
+    return 1;
 }
 
 /* Std deviation of the relative error of viscous friction. */
@@ -211,21 +220,22 @@ void sh_refit_take(sh_regression_state *state)
 
 /* What a refit needs beside the rows is spread over ticks, too. Data are forgotten before a refit that is no trial.
  */
-void sh_refit_advance(sh_regression_state *state, const sh_parameters *p)
+int sh_refit_advance(sh_regression_state *state, const sh_parameters *p)
 {
     sh_refit *refit = &state->refit;
     const int rows = state->columns.size, step = refit->row - rows;
+    int is_new = 0;
 
     if (refit->row >= rows + SH_REFIT_STEPS) {
         if (refit->pause >= SH_REFIT_PAUSE * state->blocks.count * SH_BLOCK) {
             sh_refit_begin(state, p);
         }
-        return;
+        return 0;
     }
     if (refit->row < rows) {
         take_row(state);
     } else if (step == 0) {
-        end_refit(state, p);
+        is_new = end_refit(state, p);
     } else if (step == 1) {
         sh_misfit_judge(state, p);
         set_friction_std(state, p);
@@ -242,4 +252,5 @@ void sh_refit_advance(sh_regression_state *state, const sh_parameters *p)
         refit->pause = 0;
     }
     refit->row += 1;
+    return is_new;
 }

@@ -124,8 +124,10 @@ sh_real sh_columns_judge_knees(const sh_columns *columns, const sh_parameters *p
 /* Moves the stop operators of hysteresis [size: SH_WIDTHS] by a change of the deformation [rad]. */
 void sh_columns_move_stops(sh_real *stop, const sh_parameters *p, sh_real change);
 
-/* Torque of the spring for coefficients beta [N.m]. */
+/* Torque [N.m] and stiffness [N.m/rad] of the spring for coefficients beta. */
 sh_real sh_columns_torque(const sh_columns *columns, const sh_joint_point *at, const sh_real *beta);
+sh_real sh_columns_stiffness(const sh_columns *columns, const sh_joint_point *at,
+                             const sh_real *beta);
 
 /* y [N.m] at a state of the filters [size: SH_FILTERS]. */
 sh_real sh_columns_y(const sh_parameters *p, const sh_filter_design *design,
@@ -211,12 +213,13 @@ void sh_posterior_remove(sh_posterior *posterior, sh_real information, sh_real p
 void sh_posterior_remove_noise(sh_posterior *posterior, sh_real prior_B, int i,
                                const sh_column_noise *noise);
 
-/* The estimate beta [size: size] of all columns; 0 for those that are not used. */
-void sh_posterior_estimate(const sh_posterior *posterior, sh_real prior_B, sh_real *beta, int size);
+/* The estimate beta [size: size] of all columns for a right-hand side; 0 for those that are not used. */
+void sh_posterior_estimate(const sh_posterior *posterior, sh_real prior_B, int right, sh_real *beta,
+                           int size);
 
-/* Two combinations [size: count] of the coefficients of the first columns of the data. */
-sh_combinations sh_posterior_combine(const sh_posterior *posterior, sh_real prior_B,
-                                     const sh_real *first, const sh_real *second, int count);
+/* Variances of two combinations [size: count] of the coefficients of the first columns of the data. */
+sh_variances sh_posterior_variances(const sh_posterior *posterior, sh_real prior_B,
+                                    const sh_real *first, const sh_real *second, int count);
 
 /* Variance of one of them. */
 sh_real sh_posterior_variance(const sh_posterior *posterior, sh_real prior_B, const sh_real *c,
@@ -277,10 +280,15 @@ void sh_refit_start(sh_regression_state *state, const sh_parameters *p);
 /* Starts the refit again. Its trial stays. */
 void sh_refit_begin(sh_regression_state *state, const sh_parameters *p);
 
+/* Sets the coefficients by the posterior. */
+void sh_estimate_coefficients(sh_regression_state *state, const sh_parameters *p);
+
 /* Adds the newest row to the sums of the refit, if a refit is running. */
 void sh_refit_take(sh_regression_state *state);
 
-/* Takes one row of the data of all samples, or does the next step at the end of a refit. */
-void sh_refit_advance(sh_regression_state *state, const sh_parameters *p);
+/* Takes one row of the data of all samples, or does the next step at the end of a refit. Returns 1 if the estimate
+ * is another one then.
+ */
+int sh_refit_advance(sh_regression_state *state, const sh_parameters *p);
 
 #endif

@@ -115,6 +115,11 @@ typedef struct {
     sh_real squares;            /* residual sum of squares of y [1] */
 } sh_information;
 
+/* Variances of two combinations of the coefficients. */
+typedef struct {
+    sh_real first, second;
+} sh_variances;
+
 /* A column of the regression. */
 typedef struct {
     short kind;    /* of the table in columns.c */
@@ -284,10 +289,14 @@ typedef struct {
         variance_factor;  /* reduced chi-square of the blocks, factor of the variances [1] */
     sh_real friction_std; /* of the relative error of viscous friction, at the last refit [1] */
     /* The last estimate, on which the next row depends: */
-    sh_real beta[SH_MAX_COLUMNS]; /* by column, in std deviations of the priors */
+    sh_real beta[SH_MAX_COLUMNS];     /* by column, in std deviations of the priors */
+    sh_real per_gain[SH_MAX_COLUMNS]; /* its change with the relative gain of the torque */
+    sh_variances variances;           /* of the torque of the spring [(N.m)2], and of the stiffness
+                                         [(N.m/rad)2], if the gain is right */
     sh_real y;                    /* of the sample, as it was fitted [N.m] */
     sh_real sigma;                /* stiffness [N.m/rad] */
     sh_real delay;                /* of the torque [s] */
+    sh_real viscous, inertia;     /* relative errors of motor.D_theta and motor.B [1] */
     int stiffness_known;          /* 1: columns that need the stiffness have an effect */
 } sh_regression_state;
 
