@@ -400,23 +400,19 @@ sh_real sh_columns_torque(const sh_columns *columns, const sh_joint_point *at, c
     return at->tau_nominal + sh_sum_of_products(at->F, beta, columns->spring);
 }
 
-sh_real sh_columns_stiffness(const sh_columns *columns, const sh_joint_point *at, const sh_real *beta)
-{
-    return at->sigma_nominal + sh_sum_of_products(at->dF, beta, columns->spring);
-}
-
 sh_real sh_columns_judge_knees(const sh_columns *columns, const sh_parameters *p,
                                const sh_real *beta, sh_joint_point *at)
 {
     const sh_real x = at->phi / p->range.phi;
-    const sh_real slope = sh_columns_stiffness(columns, at, beta);
     sh_real variance = 0;
     int i;
 
     for (i = 0; i < columns->spring; ++i) {
         const sh_column *column = &columns->column[i];
 
-        if (may_be_knee(column) || is_knee(column)) {
+        if (sh_fabs(beta[i]) > 0 && (may_be_knee(column) || is_knee(column))) {
+            const sh_real slope =
+                at->sigma_nominal + sh_sum_of_products(at->dF, beta, columns->spring);
             const sh_real outside = slope - at->dF[i] * beta[i]; /* of a dead zone */
             const sh_real width = may_be_knee(column) ? column->place : 1;
             const sh_real jump = beta[i] * column->prior / p->range.phi / width;

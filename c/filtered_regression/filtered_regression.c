@@ -4,6 +4,7 @@
 #include "constants.h"
 #include "information.h"
 #include "method.h"
+#include "pair.h"
 #include "regression.h"
 #include "state_variable_filter.h"
 
@@ -46,24 +47,27 @@ static sh_variances variances_at(const sh_regression_state *state, const sh_para
 
 /* tau_e = F' beta, (21), and sigma = dF' beta, (23), with the curve rls.eta_0. To the variances c' P c of both are added
  * (s_g d(c' beta)/dg)^2 with the gain g of the torque (point 8), (share c' beta)^2 with the share by which rounding
- * makes the stiffness too small (point 5), and what is not known beside a knee [(N.m/rad)2] (point 6).
+ * makes the stiffness too small (point 5), and what is not known beside a knee [(N.m/rad)2] (point 6). Returns
+ * d sigma / dg.
  */
-static void evaluate_at(const sh_regression_state *state, const sh_parameters *p,
-                        const sh_joint_point *at, const sh_variances *variances, sh_real knees,
-                        sh_point *point)
+static sh_real evaluate_at(const sh_regression_state *state, const sh_parameters *p,
+                           const sh_joint_point *at, const sh_variances *variances, sh_real knees,
+                           sh_point *point)
 {
-    const sh_columns *columns = &state->columns;
     const sh_real share = state->rounding * state->posterior.weight * variances->second;
     const sh_real gain = p->prior.torque_gain;
-    const sh_real torque = sh_sum_of_products(at->F, state->per_gain, columns->spring),
-                  stiffness = sh_sum_of_products(at->dF, state->per_gain, columns->spring);
+    const int count = state->columns.spring;
+    sh_real torque, torque_per_gain, stiffness, stiffness_per_gain;
 
-    point->tau_e = sh_columns_torque(columns, at, state->beta);
-    point->sigma = sh_columns_stiffness(columns, at, state->beta);
-    point->tau_e_std = sh_std_deviation(variances->first + sh_square(gain * torque) +
+    sh_scalar_products(at->F, state->beta, state->per_gain, count, &torque, &torque_per_gain);
+    sh_scalar_products(at->dF, state->beta, state->per_gain, count, &stiffness, &stiffness_per_gain);
+    point->tau_e = at->tau_nominal + torque;
+    point->sigma = at->sigma_nominal + stiffness;
+    point->tau_e_std = sh_std_deviation(variances->first + sh_square(gain * torque_per_gain) +
                                         sh_square(share * point->tau_e));
-    point->sigma_std = sh_std_deviation(variances->second + sh_square(gain * stiffness) +
+    point->sigma_std = sh_std_deviation(variances->second + sh_square(gain * stiffness_per_gain) +
                                         sh_square(share * point->sigma) + knees);
+    return stiffness_per_gain;
 }
 
 /* The same for a deformation at rest. */
@@ -77,7 +81,7 @@ static void evaluate_at_rest(const sh_regression_state *state, const sh_paramete
     sh_joint_point_at(at, &state->columns, p, 0, 0, phi, set_point, at_rest);
     knees = sh_columns_judge_knees(&state->columns, p, state->beta, at);
     variances = variances_at(state, p, at);
-    evaluate_at(state, p, at, &variances, knees, point);
+    (void)evaluate_at(state, p, at, &variances, knees, point);
 }
 
 static void evaluate_filtered_regression(const sh_estimator *estimator, const sh_parameters *p,
@@ -197,15 +201,15 @@ static int report(sh_regression_state *state, const sh_parameters *p, sh_joint_p
 {
     const sh_signals *signals = &state->signals;
     const sh_real knees = sh_columns_judge_knees(&state->columns, p, state->beta, at);
-    const sh_real gain = sh_sum_of_products(at->dF, state->per_gain, state->columns.spring);
     sh_point point;
+    sh_real per_gain;
 
     if (is_new) {
         state->variances = variances_at(state, p, at);
     }
-    evaluate_at(state, p, at, &state->variances, knees, &point);
+    per_gain = evaluate_at(state, p, at, &state->variances, knees, &point);
     if (!isfinite(point.sigma) || !isfinite(point.tau_e) || !isfinite(state->variances.second) ||
-        !isfinite(gain)) {
+        !isfinite(per_gain)) {
         return 0;
     }
     estimate->sigma = point.sigma;
@@ -213,7 +217,7 @@ static int report(sh_regression_state *state, const sh_parameters *p, sh_joint_p
     estimate->tau_e = point.tau_e;
     estimate->tau_e_std = point.tau_e_std;
     estimate->sigma_per_gain = sh_fabs(point.sigma) > 0
-                                   ? sh_limited(gain / sh_fabs(point.sigma), SH_LARGEST_OUTPUT)
+                                   ? sh_limited(per_gain / sh_fabs(point.sigma), SH_LARGEST_OUTPUT)
                                    : 0;
     estimate->tau_e_residual = y;
     estimate->phi = at->phi;
@@ -358,7 +362,7 @@ static int use_row(sh_regression_state *state, const sh_parameters *p)
     share = sh_posterior_take(&state->posterior, row->x, size, row->w); /* 5. Update. */
     row->rho = share > 0 ? sh_limited((1 - share) / share, SH_LARGEST_OUTPUT) : SH_LARGEST_OUTPUT;
     update_noise(state, p, &left, row->w);
-    sh_estimate_coefficients(state, p);
+    sh_posterior_estimate(&state->posterior, p->prior.B, state->beta, state->per_gain, size);
     row->tick = 0;
     return 1;
 }

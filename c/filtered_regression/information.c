@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "constants.h"
+#include "pair.h"
 
 /* Where row i begins in U. */
 static int row_offset(int size, int i)
@@ -60,7 +61,28 @@ void sh_information_restart(sh_information *a, int count, sh_real precision)
     }
 }
 
-/* Combines a row of U with a sample. What is left of the sample stays in x, for the next row. */
+/* Takes what the rows before left of a sample, of the weight w and with the entry x, into an entry of D. Returns the
+ * gain for the row of U, and changes w to what is left of it. If nothing changes, x becomes 0.
+ *
+ *     D_i += w x_i^2 ,   gain = w x_i / D_i ,   w *= D_i before / D_i .
+ */
+static sh_real take_entry(sh_real *D, sh_real *x, sh_real *w)
+{
+    const sh_real before = *D, after = before + *w * *x * *x;
+    sh_real share, gain;
+
+    if (!(sh_fabs(*x) > 0 && after > SH_SMALLEST_D)) {
+        *x = 0;
+        return 0;
+    }
+    share = 1 / after;
+    gain = *w * *x * share;
+    *D = after;
+    *w *= before * share;
+    return gain;
+}
+
+/* x -= x_i U_i ,   U_i += gain x */
 static void combine(sh_real *restrict row, sh_real *restrict x, int count, sh_real xi, sh_real gain)
 {
     int k;
@@ -71,32 +93,59 @@ static void combine(sh_real *restrict row, sh_real *restrict x, int count, sh_re
     }
 }
 
-/* Gentleman, for each row i, with the sample x and its weight w that the rows before left:
- *
- *     D_i += w x_i^2 ,   x -= x_i U_i ,   U_i += (w x_i / D_i) x ,   w *= D_i before / D_i .
- */
-sh_real sh_information_take(sh_information *a, sh_real *x, sh_real w)
+/* The same for two rows, one after the other. So each entry of the sample is read and written once for both. */
+static void combine_two(sh_real *restrict first, sh_real *restrict second, sh_real *restrict x,
+                        int count, const sh_real *xi, const sh_real *gain)
+{
+    const sh_real x_0 = xi[0], x_1 = xi[1], gain_0 = gain[0], gain_1 = gain[1];
+    int k;
+
+    for (k = 0; k < count; ++k) {
+        const sh_real left = x[k] - x_0 * first[k];
+
+        x[k] = left - x_1 * second[k];
+        first[k] += gain_0 * left;
+        second[k] += gain_1 * x[k];
+    }
+}
+
+/* Gentleman, for each row i, with the sample x and its weight w that the rows before left. */
+sh_real sh_information_take_rows(sh_information *a, int first, int end, sh_real *x, sh_real w)
 {
     const int size = a->size;
-    sh_real *row = a->U, sum;
+    sh_real *row = a->U + row_offset(size, first), gain[2];
     int i;
 
-    for (i = 0; i < size; ++i) {
-        const sh_real xi = x[i], before = a->D[i], after = before + w * xi * xi;
+    for (i = first; i < end; ++i) {
         const int count = size - 1 - i + SH_RIGHT_SIDES;
 
-        if (sh_fabs(xi) > 0 && after > SH_SMALLEST_D) {
-            const sh_real share = 1 / after;
+        gain[0] = take_entry(&a->D[i], &x[i], &w);
+        if (i + 1 < end) { /* with the next row */
+            sh_real *next = row + count;
 
-            combine(row, x + i + 1, count, xi, w * xi * share);
-            a->D[i] = after;
-            w *= before * share;
+            combine(row, x + i + 1, 1, x[i], gain[0]);
+            gain[1] = take_entry(&a->D[i + 1], &x[i + 1], &w);
+            if (sh_fabs(x[i]) > 0 || sh_fabs(x[i + 1]) > 0) {
+                combine_two(row + 1, next, x + i + 2, count - 1, x + i, gain);
+            }
+            row = next + count - 1;
+            i += 1;
+        } else {
+            combine(row, x + i + 1, count, x[i], gain[0]);
+            row += count;
         }
-        row += count;
     }
-    sum = w * x[size + SH_RIGHT_Y] * x[size + SH_RIGHT_Y];
-    a->squares += sum < SH_LARGE ? sum : SH_LARGE;
+    if (end == size) {
+        const sh_real error = x[size + SH_RIGHT_Y];
+
+        a->squares += sh_fmin(w * error * error, SH_LARGE);
+    }
     return w;
+}
+
+sh_real sh_information_take(sh_information *a, sh_real *x, sh_real w)
+{
+    return sh_information_take_rows(a, 0, a->size, x, w);
 }
 
 sh_real sh_sum_of_products(const sh_real *a, const sh_real *b, int count)
@@ -117,19 +166,23 @@ sh_real sh_sum_of_products(const sh_real *a, const sh_real *b, int count)
 }
 
 /* beta_i = z_i - sum over j > i of U_ij beta_j */
-void sh_information_solve(const sh_information *a, const sh_last_row *last, int right,
-                          sh_real *beta)
+void sh_information_solve(const sh_information *a, const sh_last_row *last, sh_real *beta,
+                          sh_real *per_gain)
 {
     const int size = a->size;
     const sh_real *row = a->U + row_offset(size, size - 1);
     int i;
 
-    beta[size - 1] = last->z[right];
+    beta[size - 1] = last->z[SH_RIGHT_Y];
+    per_gain[size - 1] = last->z[SH_RIGHT_GAIN];
     for (i = size - 2; i >= 0; --i) {
         const int count = size - 1 - i;
+        sh_real y, gain;
 
         row -= count + SH_RIGHT_SIDES;
-        beta[i] = row[count + right] - sh_sum_of_products(row, beta + i + 1, count);
+        sh_scalar_products(row, beta + i + 1, per_gain + i + 1, count, &y, &gain);
+        beta[i] = row[count + SH_RIGHT_Y] - y;
+        per_gain[i] = row[count + SH_RIGHT_GAIN] - gain;
     }
 }
 

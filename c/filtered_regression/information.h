@@ -40,6 +40,13 @@ void sh_information_restart(sh_information *a, int count, sh_real precision);
  */
 sh_real sh_information_take(sh_information *a, sh_real *x, sh_real w);
 
+/* The rows first..end - 1 take what those before them left of a sample. With all rows, one part after the other, this is
+ * sh_information_take.
+ *
+ * Returns the weight of what is left in x[end..] for the other rows.
+ */
+sh_real sh_information_take_rows(sh_information *a, int first, int end, sh_real *x, sh_real w);
+
 /* Row i of U' D U as a sample: sets x [size: size + SH_RIGHT_SIDES] to row i of [U, U z].
  *
  * i  0..size - 1
@@ -56,11 +63,11 @@ typedef struct {
 sh_last_row sh_information_last(const sh_information *a);
 void sh_information_set_last(sh_information *a, const sh_last_row *last);
 
-/* The estimate beta [size: size] of all parameters for a right-hand side, SH_RIGHT_GAIN or SH_RIGHT_Y, with another
- * last row.
+/* The estimate beta of all parameters and its change per_gain with the relative gain of the torque [size: size], with
+ * another last row.
  */
-void sh_information_solve(const sh_information *a, const sh_last_row *last, int right,
-                          sh_real *beta);
+void sh_information_solve(const sh_information *a, const sh_last_row *last, sh_real *beta,
+                          sh_real *per_gain);
 
 /* Variances c' (U' D U)^-1 c of two combinations c' beta [size: size], which are overwritten. last_D is the entry of D of
  * another last row.

@@ -88,26 +88,26 @@ void sh_posterior_remove_noise(sh_posterior *posterior, sh_real prior_B, int i,
     if (!(less > 0)) {
         return;
     }
-    sh_information_solve(a, &last, SH_RIGHT_GAIN, per_gain);
-    sh_information_solve(a, &last, SH_RIGHT_Y, beta);
+    sh_information_solve(a, &last, beta, per_gain);
     row[a->size + SH_RIGHT_GAIN] = (G + lost * (D * per_gain[i] - G)) / less;
     row[a->size + SH_RIGHT_Y] = lost * D * beta[i] / less;
     (void)sh_information_take(&posterior->information, row, -less);
 }
 
-void sh_posterior_estimate(const sh_posterior *posterior, sh_real prior_B, int right, sh_real *beta,
-                           int size)
+void sh_posterior_estimate(const sh_posterior *posterior, sh_real prior_B, sh_real *beta,
+                           sh_real *per_gain, int size)
 {
     const sh_last_row last = weighed_last(posterior, prior_B);
-    sh_real own[SH_MAX_COLUMNS] = {0};
+    sh_real own_beta[SH_MAX_COLUMNS], own_gain[SH_MAX_COLUMNS];
     int i;
 
-    sh_information_solve(&posterior->information, &last, right, own);
+    sh_information_solve(&posterior->information, &last, own_beta, own_gain);
     for (i = 0; i < size; ++i) {
-        beta[i] = 0;
+        beta[i] = per_gain[i] = 0;
     }
     for (i = 0; i < posterior->information.size; ++i) {
-        beta[posterior->column[i]] = own[i];
+        beta[posterior->column[i]] = own_beta[i];
+        per_gain[posterior->column[i]] = own_gain[i];
     }
 }
 

@@ -148,14 +148,6 @@ static void remove_noise(sh_regression_state *state, const sh_parameters *p)
     }
 }
 
-void sh_estimate_coefficients(sh_regression_state *state, const sh_parameters *p)
-{
-    const int size = state->columns.size;
-
-    sh_posterior_estimate(&state->posterior, p->prior.B, SH_RIGHT_GAIN, state->per_gain, size);
-    sh_posterior_estimate(&state->posterior, p->prior.B, SH_RIGHT_Y, state->beta, size);
-}
-
 /* All rows have been taken. Returns 1 if the estimate is another one now. */
 static int end_refit(sh_regression_state *state, const sh_parameters *p)
 {
@@ -166,7 +158,8 @@ static int end_refit(sh_regression_state *state, const sh_parameters *p)
     state->posterior = state->refit.posterior;
     state->change.following = 0;
     remove_noise(state, p);
-    sh_estimate_coefficients(state, p);
+    sh_posterior_estimate(&state->posterior, p->prior.B, state->beta, state->per_gain,
+                          state->columns.size);
     return 1;
 }
 

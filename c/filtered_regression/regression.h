@@ -124,10 +124,8 @@ sh_real sh_columns_judge_knees(const sh_columns *columns, const sh_parameters *p
 /* Moves the stop operators of hysteresis [size: SH_WIDTHS] by a change of the deformation [rad]. */
 void sh_columns_move_stops(sh_real *stop, const sh_parameters *p, sh_real change);
 
-/* Torque [N.m] and stiffness [N.m/rad] of the spring for coefficients beta. */
+/* Torque of the spring for coefficients beta [N.m]. */
 sh_real sh_columns_torque(const sh_columns *columns, const sh_joint_point *at, const sh_real *beta);
-sh_real sh_columns_stiffness(const sh_columns *columns, const sh_joint_point *at,
-                             const sh_real *beta);
 
 /* y [N.m] at a state of the filters [size: SH_FILTERS]. */
 sh_real sh_columns_y(const sh_parameters *p, const sh_filter_design *design,
@@ -213,9 +211,11 @@ void sh_posterior_remove(sh_posterior *posterior, sh_real information, sh_real p
 void sh_posterior_remove_noise(sh_posterior *posterior, sh_real prior_B, int i,
                                const sh_column_noise *noise);
 
-/* The estimate beta [size: size] of all columns for a right-hand side; 0 for those that are not used. */
-void sh_posterior_estimate(const sh_posterior *posterior, sh_real prior_B, int right, sh_real *beta,
-                           int size);
+/* The estimate beta of all columns, and its change per_gain with the relative gain of the torque [size: size]; 0 for
+ * columns that are not used.
+ */
+void sh_posterior_estimate(const sh_posterior *posterior, sh_real prior_B, sh_real *beta,
+                           sh_real *per_gain, int size);
 
 /* Variances of two combinations [size: count] of the coefficients of the first columns of the data. */
 sh_variances sh_posterior_variances(const sh_posterior *posterior, sh_real prior_B,
@@ -279,9 +279,6 @@ void sh_refit_start(sh_regression_state *state, const sh_parameters *p);
 
 /* Starts the refit again. Its trial stays. */
 void sh_refit_begin(sh_regression_state *state, const sh_parameters *p);
-
-/* Sets the coefficients by the posterior. */
-void sh_estimate_coefficients(sh_regression_state *state, const sh_parameters *p);
 
 /* Adds the newest row to the sums of the refit, if a refit is running. */
 void sh_refit_take(sh_regression_state *state);
