@@ -123,7 +123,8 @@ sh_real sh_information_take_rows(sh_information *a, int first, int end, sh_real 
         if (i + 1 < end) { /* with the next row */
             sh_real *next = row + count;
 
-            combine(row, x + i + 1, 1, x[i], gain[0]);
+            x[i + 1] -= x[i] * row[0];
+            row[0] += gain[0] * x[i + 1];
             gain[1] = take_entry(&a->D[i + 1], &x[i + 1], &w);
             if (sh_fabs(x[i]) > 0 || sh_fabs(x[i + 1]) > 0) {
                 combine_two(row + 1, next, x + i + 2, count - 1, x + i, gain);
