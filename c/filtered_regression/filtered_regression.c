@@ -370,13 +370,10 @@ static int use_row(sh_regression_state *state, const sh_parameters *p)
 /* What else a row changes: step 0 to 5, at most one triangular matrix each. */
 static void take_step(sh_regression_state *state, const sh_parameters *p, int step)
 {
-    if (step == 0) { /* before the data: a refit that starts later has this row from them */
-        sh_refit_take(state);
+    if (step == 0) {
+        sh_data_take(state);
     } else if (step == 1) {
-        sh_real x[SH_MAX_ROW];
-
-        (void)memcpy(x, state->row.x, sizeof x);
-        (void)sh_information_take(&state->data, x, state->row.w);
+        sh_refit_take(state);
     } else if (step == 2) {
         sh_blocks_take(state);
     }

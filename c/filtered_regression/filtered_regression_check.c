@@ -40,9 +40,9 @@ static int are_data(const sh_regression_state *state)
     const sh_blocks *blocks = &state->blocks;
     const int size = state->columns.size;
 
-    if (state->data.size != size || state->refit.frozen.size != size ||
-        blocks->constant.size != size || blocks->drifting.size != size ||
-        blocks->recent.size != size || state->change.changed.size != size) {
+    if (state->data.size != size || blocks->constant.size != size ||
+        blocks->drifting.size != size || blocks->recent.size != size ||
+        state->change.changed.size != size) {
         return 0;
     }
     return 1;

@@ -1,8 +1,11 @@
 /* Refits: how the misfit, and the choice of columns, act on past samples in bounded time (detail 6). A row of
  * the data with its weight is a sample for another triangle: so a new posterior is computed beside the present
- * one, from a row of a copy of the data in each tick, and from each new row. Every second refit is a trial of a
- * group of columns, and its estimate is not used.
+ * one, from one row of the data in each tick, beginning with the last. A new row passes the rows of the data from the
+ * first to the last: what those that have not been read leave of it is for the new posterior, too. Every second refit
+ * is a trial of a group of columns, and its estimate is not used.
  */
+#include <string.h>
+
 #include "constants.h"
 #include "regression.h"
 
@@ -65,7 +68,6 @@ void sh_refit_begin(sh_regression_state *state, const sh_parameters *p)
     refit->posterior.removed = 0;
     refit->posterior.surplus = state->surplus * weight;
     refit->posterior.spread = state->spread * weight * weight;
-    refit->frozen = state->data;
     refit->row = 0;
 }
 
@@ -192,23 +194,41 @@ static void plan_refit(sh_regression_state *state, const sh_parameters *p)
 static void take_row(sh_regression_state *state)
 {
     sh_refit *refit = &state->refit;
+    const int size = state->columns.size;
     sh_real x[SH_MAX_ROW] = {0};
-    const sh_real w = sh_information_sample(&refit->frozen, refit->row, x);
+    const sh_real w = sh_information_sample(&state->data, size - 1 - refit->row, x);
 
-    (void)sh_posterior_take(&refit->posterior, x, state->columns.size, w);
+    (void)sh_posterior_take(&refit->posterior, x, size, w);
+}
+
+void sh_data_take(sh_regression_state *state)
+{
+    const sh_row *row = &state->row;
+    const sh_real duration = (sh_real)state->signals.decimation * state->signals.design.T;
+    const int size = state->columns.size;
+    sh_refit *refit = &state->refit;
+    const int unread = refit->row < size ? size - refit->row : 0;
+    sh_real x[SH_MAX_ROW], w;
+    int i;
+
+    (void)memcpy(x, row->x, sizeof x);
+    w = sh_information_take_rows(&state->data, 0, unread, x, row->w);
+    for (i = 0; i < SH_MAX_ROW; ++i) {
+        refit->x[i] = i < unread ? 0 : x[i];
+    }
+    refit->w = unread < size && refit->row <= size ? w : 0; /* else it has not begun, or has ended */
+    (void)sh_information_take_rows(&state->data, unread, size, x, w);
+    refit->time += duration;
+    refit->pause += duration;
 }
 
 void sh_refit_take(sh_regression_state *state)
 {
-    const sh_row *row = &state->row;
-    const sh_real duration = (sh_real)state->signals.decimation * state->signals.design.T;
     sh_refit *refit = &state->refit;
 
-    if (refit->row <= state->columns.size) { /* else it has ended */
-        (void)sh_posterior_take(&refit->posterior, row->x, state->columns.size, row->w);
+    if (refit->w > 0) {
+        (void)sh_posterior_take(&refit->posterior, refit->x, state->columns.size, refit->w);
     }
-    refit->time += duration;
-    refit->pause += duration;
 }
 
 /* What a refit needs beside the rows is spread over ticks, too. Data are forgotten before a refit that is no trial.

@@ -280,7 +280,10 @@ void sh_refit_start(sh_regression_state *state, const sh_parameters *p);
 /* Starts the refit again. Its trial stays. */
 void sh_refit_begin(sh_regression_state *state, const sh_parameters *p);
 
-/* Adds the newest row to the sums of the refit, if a refit is running. */
+/* Takes the newest row into the data of all samples. */
+void sh_data_take(sh_regression_state *state);
+
+/* Takes what the newest row left for the refit, if one is running. Nothing may be read in between. */
 void sh_refit_take(sh_regression_state *state);
 
 /* Takes one row of the data of all samples, or does the next step at the end of a refit. Returns 1 if the estimate

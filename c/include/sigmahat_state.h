@@ -256,9 +256,9 @@ typedef struct {
 
 /* The next posterior while it is computed from all data, refit.c. */
 typedef struct {
-    sh_information frozen; /* copy of the data at the begin */
     sh_posterior posterior;
-    int row;   /* next row of `frozen`; behind the last one: what a refit does at its end */
+    int row; /* rows of the data that have been read; behind all: what a refit does at its end */
+    sh_real x[SH_MAX_ROW], w; /* what the data left of the newest row, and its weight */
     int trial; /* group that the refit tries, in its last steps of the next one; 0: none, it changes
                   the estimate */
     int last_trial;      /* group that was tried last */
