@@ -231,6 +231,13 @@ void sh_refit_take(sh_regression_state *state)
     }
 }
 
+/* Pause before the next refit [s]. Before there are enough blocks, a refit changes little. */
+static sh_real pause_of(const sh_blocks *blocks)
+{
+    return blocks->count < SH_FIRST_BLOCKS ? SH_FIRST_PAUSE
+                                           : SH_REFIT_PAUSE * blocks->count * SH_BLOCK;
+}
+
 /* What a refit needs beside the rows is spread over ticks, too. Data are forgotten before a refit that is no trial.
  */
 int sh_refit_advance(sh_regression_state *state, const sh_parameters *p)
@@ -240,7 +247,7 @@ int sh_refit_advance(sh_regression_state *state, const sh_parameters *p)
     int is_new = 0;
 
     if (refit->row >= rows + SH_REFIT_STEPS) {
-        if (refit->pause >= SH_REFIT_PAUSE * state->blocks.count * SH_BLOCK) {
+        if (refit->pause >= pause_of(&state->blocks)) {
             sh_refit_begin(state, p);
         }
         return 0;
