@@ -19,7 +19,6 @@
  * its entry in entry_of.
  */
 #include <stddef.h>
-#include <string.h>
 
 #include "constants.h"
 #include "regression.h"
@@ -301,12 +300,12 @@ static sh_real signal_of(const sh_column *column, const sh_parameters *p, const 
         if (may_be_knee(column) && sh_fabs(at->phi) < h * p->range.phi) {
             *slope = 1 / (h * p->range.phi);
         }
-        return sh_limited(at->phi / p->range.phi, h) / h;
+        return sh_limited(at->x, h) / h;
     case SH_COLUMN_HYSTERESIS: /* z / h, the element is z <- sh_limited(z + dphi, h) */
         return at->stop[i % SH_WIDTHS] / (h * p->range.phi);
     case SH_COLUMN_KNEE:
     case SH_COLUMN_POSSIBLE_KNEE:
-        beyond = beyond_knee(at->phi / p->range.phi, h, p->rls.symmetric);
+        beyond = beyond_knee(at->x, h, p->rls.symmetric);
         *slope = sh_fabs(beyond) > 0 ? 1 / p->range.phi : 0;
         return beyond;
     case SH_COLUMN_SIN_M:
@@ -322,7 +321,7 @@ static sh_real signal_of(const sh_column *column, const sh_parameters *p, const 
 static void set_powers(sh_joint_point *point, const sh_parameters *p, sh_real set_point)
 {
     const int symmetric = p->rls.symmetric;
-    const sh_real x = point->phi / p->range.phi;
+    const sh_real x = point->x;
     const sh_real l = (set_point - p->range.setPoint_center) / p->range.setPoint;
     const sh_real step = symmetric ? x * x : x;
     sh_real power = symmetric ? x : 1, slope = symmetric ? 1 / p->range.phi : 0;
@@ -364,11 +363,12 @@ void sh_joint_point_at(sh_joint_point *point, const sh_columns *columns, const s
 {
     int i;
 
-    (void)memset(point, 0, sizeof *point);
     point->theta = theta;
     point->q = q;
     point->phi = phi;
+    point->x = phi / p->range.phi;
     point->stop = stop;
+    point->tau_nominal = point->sigma_nominal = 0;
     set_powers(point, p, set_point);
     if (columns->has_nominal) {
         set_nominal(point, p, set_point);
@@ -403,7 +403,6 @@ sh_real sh_columns_torque(const sh_columns *columns, const sh_joint_point *at, c
 sh_real sh_columns_judge_knees(const sh_columns *columns, const sh_parameters *p,
                                const sh_real *beta, sh_joint_point *at)
 {
-    const sh_real x = at->phi / p->range.phi;
     sh_real variance = 0;
     int i;
 
@@ -419,7 +418,7 @@ sh_real sh_columns_judge_knees(const sh_columns *columns, const sh_parameters *p
 
             if (may_be_knee(column) && outside + jump < SH_GAP * outside) {
                 at->dF[i] = 0;
-            } else if (is_beside(column, p, x)) {
+            } else if (is_beside(column, p, at->x)) {
                 variance += sh_square(jump / 2);
             }
         }

@@ -131,8 +131,8 @@
  * hardly change. No simple ratio of blocks and rows, so that no rounding error decides.
  */
 #define SH_REFIT_PAUSE ((sh_real)0.0201)
-/* Pause while nothing is judged yet [s]: two blocks. */
-#define SH_FIRST_PAUSE ((sh_real)0.1)
+/* Pause while nothing is judged yet [s]: a refit then removes noise (detail 14), and nothing else. */
+#define SH_FIRST_PAUSE ((sh_real)0.2)
 /* Gain of the logarithm of the evidence from which a group is used: at first, and for each block [1]. So it
  * reduces the variance of the error by a tenth: rounding of a periodic motion is a small evidence for any
  * column.

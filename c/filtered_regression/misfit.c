@@ -85,27 +85,21 @@ static sh_real take_block(sh_information *a, const sh_real *mean, sh_real w)
 }
 
 /* Mean row sum h w x / sum h w. The hypothesis of a change takes it first, as it may begin anew before this block. */
-void sh_blocks_end(sh_regression_state *state, const sh_parameters *p, int step)
+static void end_block(sh_regression_state *state, const sh_parameters *p, int step)
 {
     sh_blocks *blocks = &state->blocks;
     const int count = state->columns.size + SH_RIGHT_SIDES;
+    const sh_real variance = variance_of(state, p), w = 1 / variance;
     sh_change *change = &state->change;
-    sh_real mean[SH_MAX_ROW] = {0}, variance, w, error;
+    sh_real mean[SH_MAX_ROW] = {0}, error;
     int i;
 
-    if (step < 0 || step > 3 || blocks->rows < blocks->length) {
-        return;
-    }
     for (i = 0; i < count; ++i) {
         mean[i] = blocks->sum[i] / blocks->weight;
     }
-    variance = variance_of(state, p);
     if (!(variance > 0 && sh_sum_of_products(mean, mean, count) / variance <= SH_LARGE)) {
         sh_blocks_interrupt(blocks); /* also if not a number */
-        return;
-    }
-    w = 1 / variance;
-    if (step == 0) {
+    } else if (step == 0) {
         error = take_block(&change->changed, mean, w);
         change->error = sh_change_begins_anew(state, error) ? 0 : error;
     } else if (step == 1) {
@@ -118,6 +112,13 @@ void sh_blocks_end(sh_regression_state *state, const sh_parameters *p, int step)
         count_block(state);
         sh_change_judge(state, p, blocks->error, change->error);
         sh_blocks_interrupt(blocks);
+    }
+}
+
+void sh_blocks_end(sh_regression_state *state, const sh_parameters *p, int step)
+{
+    if (step >= 0 && step <= 3 && state->blocks.rows >= state->blocks.length) {
+        end_block(state, p, step);
     }
 }
 

@@ -8,7 +8,7 @@ sh_real sh_posterior_take(sh_posterior *posterior, const sh_real *x, int size, s
 {
     const int own = posterior->information.size;
     const sh_real weight = w * posterior->weight;
-    sh_real row[SH_MAX_ROW] = {0};
+    sh_real row[SH_MAX_ROW];
     int i;
 
     for (i = 0; i < own; ++i) {

@@ -36,7 +36,7 @@ static int place_of(const sh_regression_state *state, const sh_parameters *p, in
 }
 
 /* Chooses columns [size: SH_MAX_COLUMNS] for the refit. Returns their number. */
-static int choose_columns(const sh_regression_state *state, const sh_parameters *p, int *chosen)
+static int choose_columns(const sh_regression_state *state, const sh_parameters *p, short *chosen)
 {
     int places[SH_MAX_COLUMNS] = {0}, size = 0, place, i;
 
@@ -49,7 +49,7 @@ static int choose_columns(const sh_regression_state *state, const sh_parameters 
         /*@ loop unroll SH_MAX_COLUMNS; */
         for (i = 0; i < state->columns.size; ++i) {
             if (size < state->columns.size && place == places[i]) {
-                chosen[size++] = i;
+                chosen[size++] = (short)i;
             }
         }
     }
@@ -195,7 +195,7 @@ static void take_row(sh_regression_state *state)
 {
     sh_refit *refit = &state->refit;
     const int size = state->columns.size;
-    sh_real x[SH_MAX_ROW] = {0};
+    sh_real x[SH_MAX_ROW];
     const sh_real w = sh_information_sample(&state->data, size - 1 - refit->row, x);
 
     (void)sh_posterior_take(&refit->posterior, x, size, w);

@@ -14,7 +14,8 @@ enum {
 /* Where the joint is, and the signals of the columns there, before the filter. */
 typedef struct {
     sh_real theta, q, phi;      /* positions and deformation [rad] */
-    sh_real power[SH_MAX_N];    /* x^e / e, x = phi / range.phi, e of number i [1] */
+    sh_real x;                  /* phi / range.phi [1] */
+    sh_real power[SH_MAX_N];    /* x^e / e, e of number i [1] */
     sh_real slope[SH_MAX_N];    /* and its derivative by phi [1/rad] */
     sh_real l[SH_MAX_M];        /* ((set-point - its center) / range.setPoint)^j [1] */
     sh_real tau_nominal;        /* torque of the curve rls.eta_0 [N.m] */

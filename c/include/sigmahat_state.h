@@ -214,7 +214,7 @@ typedef struct {
 /* Prior and data, which are weighted by the misfit, in the order of its own columns. */
 typedef struct {
     sh_information information;
-    int column[SH_MAX_COLUMNS]; /* which column of the data each of its own is */
+    short column[SH_MAX_COLUMNS]; /* which column of the data each of its own is */
     sh_real weight;             /* of the data, one over the variance factor of the misfit [1] */
     sh_real surplus;            /* information about b that is rounding, still contained [1] */
     sh_real removed;            /* removed so far [1] */
