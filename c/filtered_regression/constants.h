@@ -130,7 +130,7 @@
 /* Pause between two refits, over the duration of the blocks that count [1]: in 2 % more time the estimate can
  * hardly change. No simple ratio of blocks and rows, so that no rounding error decides.
  */
-#define SH_REFIT_PAUSE ((sh_real)0.0201)
+#define SH_REFIT_PAUSE ((sh_real)0.0101)
 /* Pause while nothing is judged yet [s]: a refit then removes noise (detail 14), and nothing else. */
 #define SH_FIRST_PAUSE ((sh_real)0.2)
 /* Gain of the logarithm of the evidence from which a group is used: at first, and for each block [1]. So it

@@ -194,17 +194,17 @@ static void report_coefficients(sh_regression_state *state, const sh_parameters 
  * at a point are as much work as a row, so they are computed as often (detail 16).
  *
  * settled  whether the filters have settled
- * is_new   whether the coefficients are others than in the last tick
+ * news     SH_NEW_*
  */
 static int report(sh_regression_state *state, const sh_parameters *p, sh_joint_point *at, sh_real y,
-                  int settled, int is_new, sh_estimate *estimate)
+                  int settled, int news, sh_estimate *estimate)
 {
     const sh_signals *signals = &state->signals;
     const sh_real knees = sh_columns_judge_knees(&state->columns, p, state->beta, at);
     sh_point point;
     sh_real per_gain;
 
-    if (is_new) {
+    if ((news & SH_NEW_VARIANCES) != 0) {
         state->variances = variances_at(state, p, at);
     }
     per_gain = evaluate_at(state, p, at, &state->variances, knees, &point);
@@ -228,7 +228,7 @@ static int report(sh_regression_state *state, const sh_parameters *p, sh_joint_p
     estimate->epsilon = state->row.epsilon;
     estimate->change_age = state->history.change_age;
     estimate->misfit = sh_sqrt(state->misfit);
-    if (is_new) {
+    if ((news & SH_NEW_COEFFICIENTS) != 0) {
         report_coefficients(state, p, at, estimate);
     }
     estimate->doubt = doubt_of(state, p, estimate);
@@ -362,22 +362,30 @@ static int use_row(sh_regression_state *state, const sh_parameters *p)
     share = sh_posterior_take(&state->posterior, row->x, size, row->w); /* 5. Update. */
     row->rho = share > 0 ? sh_limited((1 - share) / share, SH_LARGEST_OUTPUT) : SH_LARGEST_OUTPUT;
     update_noise(state, p, &left, row->w);
-    sh_posterior_estimate(&state->posterior, p->prior.B, state->beta, state->per_gain, size);
     row->tick = 0;
     return 1;
 }
 
-/* What else a row changes: step 0 to 5, at most one triangular matrix each. */
-static void take_step(sh_regression_state *state, const sh_parameters *p, int step)
+/* What else a row changes: step 0 to 7, at most one triangular matrix each. Returns SH_NEW_*. */
+static int take_step(sh_regression_state *state, const sh_parameters *p, int step)
 {
+    int news = 0;
+
     if (step == 0) {
-        sh_data_take(state);
+        sh_posterior_estimate(&state->posterior, p->prior.B, state->beta, state->per_gain,
+                              state->columns.size);
+        news = SH_NEW_COEFFICIENTS;
     } else if (step == 1) {
-        sh_refit_take(state);
+        news = SH_NEW_VARIANCES;
     } else if (step == 2) {
+        sh_data_take(state);
+    } else if (step == 3) {
+        sh_refit_take(state);
+    } else if (step == 4) {
         sh_blocks_take(state);
     }
-    sh_blocks_end(state, p, step - 2);
+    sh_blocks_end(state, p, step - 4);
+    return news;
 }
 
 static int is_block_full(const sh_blocks *blocks)
@@ -391,25 +399,28 @@ static int first_step(int tick, int ticks)
     return (SH_ROW_STEPS * tick + ticks - 1) / ticks;
 }
 
-/* The steps are spread over the ticks until the next row. The refit advances in ticks in which neither the data
- * nor the blocks take a row, if there are at least three. Returns 1 if the refit changed the estimate.
+/* The steps are spread over the ticks until the next row. The refit advances in ticks in which nothing else works with
+ * a triangular matrix, if there are at least three. Returns SH_NEW_*.
  */
 static int take_steps(sh_regression_state *state, const sh_parameters *p)
 {
     const int ticks = state->signals.decimation > 1 ? state->signals.decimation - 1 : 1;
     const int tick = state->row.tick;
-    int is_busy, step;
+    int news = 0, is_busy, step;
 
     if (tick < 0 || tick >= ticks) { /* all steps are done */
         return 0;
     }
     state->row.tick = tick + 1;
-    is_busy = first_step(tick, ticks) < 2 || is_block_full(&state->blocks);
+    is_busy = first_step(tick, ticks) < 4 || is_block_full(&state->blocks);
     for (step = first_step(tick, ticks); step < first_step(tick + 1, ticks); ++step) {
-        take_step(state, p, step);
+        news |= take_step(state, p, step);
         is_busy = is_busy || is_block_full(&state->blocks);
     }
-    return (!is_busy || ticks < 3) && sh_refit_advance(state, p);
+    if (!is_busy || ticks < 3) {
+        news |= sh_refit_advance(state, p);
+    }
+    return news;
 }
 
 /* Waits until the filters have settled. A block that is not full is dropped: it would contain rows from both
@@ -447,7 +458,7 @@ static int tick_filtered_regression(sh_estimator *estimator, const sh_parameters
 {
     sh_regression_state *state = &estimator->method.regression;
     const sh_history before = state->history;
-    int settled, complete, is_new;
+    int settled, complete, news;
     sh_joint_point at;
     sh_real y;
 
@@ -472,15 +483,15 @@ static int tick_filtered_regression(sh_estimator *estimator, const sh_parameters
     if (complete && !use_row(state, p)) { /* 3. to 5. Weigh it, predict it, and update. */
         return refuse(state, &before);
     }
-    is_new = complete || !settled; /* before the filters have settled, because the deformation moves */
+    news = settled ? 0 : SH_NEW_VARIANCES; /* the deformation moves, and there are no rows */
     if (!complete || state->signals.decimation == 1) {
-        is_new |= take_steps(state, p); /* 6. Data, misfit, forgetting, choice of columns. */
+        news |= take_steps(state, p); /* 6. Estimate, data, misfit, forgetting, choice of columns. */
     }
     if (!settled) {
         state->row.epsilon = state->row.rho = 0;
         (void)memset(&state->mean, 0, sizeof state->mean); /* the filters add every sample */
     }
-    return report(state, p, &at, y, settled, is_new, estimate) ? 1 : refuse(state, &before); /* 7. */
+    return report(state, p, &at, y, settled, news, estimate) ? 1 : refuse(state, &before); /* 7. */
 }
 
 const sh_method sh_filtered_regression = {

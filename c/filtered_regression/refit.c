@@ -137,7 +137,7 @@ static void decide_about_group(sh_regression_state *state)
 /* Details 7 and 14. The inertia comes first: its rounding would bias the other one. */
 static void remove_noise(sh_regression_state *state, const sh_parameters *p)
 {
-    sh_posterior *posterior = &state->posterior;
+    sh_posterior *posterior = &state->refit.posterior;
     int i;
 
     if (p->prior.B > 0) {
@@ -150,19 +150,13 @@ static void remove_noise(sh_regression_state *state, const sh_parameters *p)
     }
 }
 
-/* All rows have been taken. Returns 1 if the estimate is another one now. */
-static int end_refit(sh_regression_state *state, const sh_parameters *p)
+/* The estimate is the one of the refit now. Returns SH_NEW_*. */
+static int use_refit(sh_regression_state *state, const sh_parameters *p)
 {
-    if (state->refit.trial != 0) {
-        decide_about_group(state);
-        return 0;
-    }
     state->posterior = state->refit.posterior;
-    state->change.following = 0;
-    remove_noise(state, p);
     sh_posterior_estimate(&state->posterior, p->prior.B, state->beta, state->per_gain,
                           state->columns.size);
-    return 1;
+    return SH_NEW_COEFFICIENTS;
 }
 
 /* Std deviation of the relative error of viscous friction. */
@@ -216,7 +210,7 @@ void sh_data_take(sh_regression_state *state)
     for (i = 0; i < SH_MAX_ROW; ++i) {
         refit->x[i] = i < unread ? 0 : x[i];
     }
-    refit->w = unread < size && refit->row <= size ? w : 0; /* else it has not begun, or has ended */
+    refit->w = refit->row > 0 && refit->row <= size + 1 ? w : 0; /* else nothing is read, or it is in use */
     (void)sh_information_take_rows(&state->data, unread, size, x, w);
     refit->time += duration;
     refit->pause += duration;
@@ -238,13 +232,46 @@ static sh_real pause_of(const sh_blocks *blocks)
                                            : SH_REFIT_PAUSE * blocks->count * SH_BLOCK;
 }
 
-/* What a refit needs beside the rows is spread over ticks, too. Data are forgotten before a refit that is no trial.
+/* What a refit does behind its rows: step 0..8, at most two triangular matrices each. Data are forgotten before a refit
+ * that is no trial. Returns SH_NEW_*.
  */
+static int take_step(sh_regression_state *state, const sh_parameters *p, int step)
+{
+    sh_refit *refit = &state->refit;
+    const int is_trial = refit->trial != 0;
+    int news = 0;
+
+    if (step == 0 && is_trial) {
+        decide_about_group(state);
+    } else if (step == 0) {
+        remove_noise(state, p);
+    } else if (step == 1 && !is_trial) {
+        news = use_refit(state, p);
+    } else if (step == 2 && !is_trial) {
+        state->change.following = 0;
+        news = SH_NEW_VARIANCES;
+    } else if (step == 3) {
+        sh_misfit_judge(state, p);
+        set_friction_std(state, p);
+        plan_refit(state, p);
+    } else if (step >= 4 && step < SH_REFIT_STEPS - 1 && !is_trial) {
+        sh_friction_drift(state, refit->time, step - 4);
+    } else if (step == SH_REFIT_STEPS - 1) {
+        if (!is_trial) {
+            sh_forget(state, p, refit->time);
+            refit->time = 0;
+        }
+        refit->pause = 0;
+    }
+    return news;
+}
+
+/* What a refit needs is spread over ticks, too. */
 int sh_refit_advance(sh_regression_state *state, const sh_parameters *p)
 {
     sh_refit *refit = &state->refit;
-    const int rows = state->columns.size, step = refit->row - rows;
-    int is_new = 0;
+    const int rows = state->columns.size;
+    int news = 0;
 
     if (refit->row >= rows + SH_REFIT_STEPS) {
         if (refit->pause >= pause_of(&state->blocks)) {
@@ -254,23 +281,9 @@ int sh_refit_advance(sh_regression_state *state, const sh_parameters *p)
     }
     if (refit->row < rows) {
         take_row(state);
-    } else if (step == 0) {
-        is_new = end_refit(state, p);
-    } else if (step == 1) {
-        sh_misfit_judge(state, p);
-        set_friction_std(state, p);
-        plan_refit(state, p);
-    } else if (step < SH_REFIT_STEPS - 1) {
-        if (refit->trial == 0) {
-            sh_friction_drift(state, refit->time, step - 2);
-        }
     } else {
-        if (refit->trial == 0) {
-            sh_forget(state, p, refit->time);
-            refit->time = 0;
-        }
-        refit->pause = 0;
+        news = take_step(state, p, refit->row - rows);
     }
     refit->row += 1;
-    return is_new;
+    return news;
 }

@@ -7,8 +7,14 @@
 #include "information.h"
 
 enum {
-    SH_ROW_STEPS = 6,  /* in which a row changes what is behind the estimate */
-    SH_REFIT_STEPS = 7 /* of a refit behind its rows, before it pauses */
+    SH_ROW_STEPS = 8,  /* in which a row changes the estimate, and what is behind it */
+    SH_REFIT_STEPS = 9 /* of a refit behind its rows, before it pauses */
+};
+
+/* What a step changes, which may be added up. */
+enum {
+    SH_NEW_COEFFICIENTS = 1,
+    SH_NEW_VARIANCES = 2 /* to be computed at the point of this tick */
 };
 
 /* Where the joint is, and the signals of the columns there, before the filter. */
@@ -287,9 +293,7 @@ void sh_data_take(sh_regression_state *state);
 /* Takes what the newest row left for the refit, if one is running. Nothing may be read in between. */
 void sh_refit_take(sh_regression_state *state);
 
-/* Takes one row of the data of all samples, or does the next step at the end of a refit. Returns 1 if the estimate
- * is another one then.
- */
+/* Takes one row of the data of all samples, or does the next step at the end of a refit. Returns SH_NEW_*. */
 int sh_refit_advance(sh_regression_state *state, const sh_parameters *p);
 
 #endif
