@@ -109,6 +109,25 @@ static void combine_two(sh_real *restrict first, sh_real *restrict second, sh_re
     }
 }
 
+sh_real sh_information_predict(const sh_information *a, sh_real *x, sh_real w)
+{
+    const int size = a->size;
+    const sh_real *row = a->U;
+    int i, k;
+
+    for (i = 0; i < size; ++i) {
+        const int count = size - 1 - i + SH_RIGHT_SIDES;
+        sh_real D = a->D[i];
+
+        (void)take_entry(&D, &x[i], &w);
+        for (k = 0; k < count; ++k) {
+            x[i + 1 + k] -= x[i] * row[k];
+        }
+        row += count;
+    }
+    return w;
+}
+
 /* Gentleman, for each row i, with the sample x and its weight w that the rows before left. */
 sh_real sh_information_take_rows(sh_information *a, int first, int end, sh_real *x, sh_real w)
 {

@@ -47,6 +47,9 @@ sh_real sh_information_take(sh_information *a, sh_real *x, sh_real w);
  */
 sh_real sh_information_take_rows(sh_information *a, int first, int end, sh_real *x, sh_real w);
 
+/* Returns what sh_information_take would, and changes x in the same way, but does not take the sample. */
+sh_real sh_information_predict(const sh_information *a, sh_real *x, sh_real w);
+
 /* Row i of U' D U as a sample: sets x [size: size + SH_RIGHT_SIDES] to row i of [U, U z].
  *
  * i  0..size - 1

@@ -84,6 +84,21 @@ static sh_real take_block(sh_information *a, const sh_real *mean, sh_real w)
     return sh_limited(error * sh_square(x[a->size + SH_RIGHT_Y]), SH_LARGE);
 }
 
+/* The same for the hypothesis of a change, which does not take its first block: if this is evidence, the spring changes
+ * in it, and if not, the hypothesis begins anew behind it.
+ */
+static sh_real take_changed_block(sh_change *change, const sh_real *mean, sh_real w)
+{
+    sh_real x[SH_MAX_ROW], error;
+
+    if (change->blocks > 0) {
+        return take_block(&change->changed, mean, w);
+    }
+    (void)memcpy(x, mean, sizeof x);
+    error = sh_information_predict(&change->changed, x, w);
+    return sh_limited(error * sh_square(x[change->changed.size + SH_RIGHT_Y]), SH_LARGE);
+}
+
 /* Mean row sum h w x / sum h w. The hypothesis of a change takes it first, as it may begin anew before this block. */
 static void end_block(sh_regression_state *state, const sh_parameters *p, int step)
 {
@@ -100,7 +115,7 @@ static void end_block(sh_regression_state *state, const sh_parameters *p, int st
     if (!(variance > 0 && sh_sum_of_products(mean, mean, count) / variance <= SH_LARGE)) {
         sh_blocks_interrupt(blocks); /* also if not a number */
     } else if (step == 0) {
-        error = take_block(&change->changed, mean, w);
+        error = take_changed_block(change, mean, w);
         change->error = sh_change_begins_anew(state, error) ? 0 : error;
     } else if (step == 1) {
         blocks->error = take_block(&blocks->constant, mean, w);
