@@ -228,7 +228,10 @@ class Oracle:
         self.samples: list[int] = []  # of the next row
         # What the last row still changes, and ticks since it as far as there is something.
         self.steps, self.tick = iter(list[None]()), self.K
-        self.friction_drifts = self.known = False
+        self.friction_drifts = self.known = self.is_built = False
+        # At each tick until there is a row: variances of stiffness and torque by the posterior.
+        self.new_variances, self.has_row = True, False
+        self.variances = (0.0, 0.0)
         self.set_beta()
         self.sigma = self.y = self.delay = 0.0
         self.resting = self.unsure = 0
@@ -289,7 +292,12 @@ class Oracle:
             if self.trial:
                 self.end_trial()
             else:
-                self.end_pass()
+                self.end_build()
+            yield
+            if not self.trial:
+                self.use_build()
+            yield
+            self.new_variances |= not self.trial
             yield
             self.plan()
             yield
@@ -302,16 +310,25 @@ class Oracle:
                 self.forget(self.since)
                 self.since = 0.0
             yield
-            while self.pause < 0.0201 * 0.05 * self.blocks.count:
+            while self.pause < self.shortest_pause():
                 yield
 
-    def end_pass(self) -> None:
+    def shortest_pause(self) -> float:
+        count = self.blocks.count
+        return 0.2 if count < 20 else 0.0101 * 0.05 * count
+
+    def end_build(self) -> None:
+        """Without the noise in its columns; rows that come until it is used are learned later."""
         self.build.solve(self.data)
+        if self.p["prior.B"] > 0:
+            self.build.remove(0.0)
+        self.build.remove_noise()
+        self.is_built = True
+
+    def use_build(self) -> None:
         self.live = self.build
         self.build = Posterior([], 1.0, 0.0, -1)  # until the next pass starts
-        if self.p["prior.B"] > 0:
-            self.live.remove(0.0)
-        self.live.remove_noise()
+        self.is_built = False
         self.set_beta()
 
     def end_trial(self) -> None:
@@ -453,6 +470,7 @@ class Oracle:
         self.rounding += self.gain * float(np.sum(self.counts**2)) / 12 / R
         if "DRIVE" in self.kinds and not filtered.measured and row[-SIDES] != 0:
             self.remove_noise(row, self.share_of_torque(filtered.unknown_f[at]), R)
+        self.has_row = True
         self.epsilon = self.error(row)
         self.rho = self.live.learn(row, 1 / R)
         mean_rough = float(np.mean(rough[self.samples]))
@@ -470,17 +488,22 @@ class Oracle:
                 posterior.spread += Q * posterior.weight**2
             self.build.surplus += N * self.build.weight
             self.live.remove(N * self.live.weight)
-        self.set_beta()
         self.steps, self.tick = self.make_steps(row, R, last, mean_rough, filtered.measured), 0
 
     def make_steps(
         self, row: Long, R: float, last: float, rough: float, measured: bool
     ) -> Iterator[None]:
-        """The six steps after a row, spread over the ticks until the next one."""
+        """The eight steps after a row, spread over the ticks until the next one."""
+        self.set_beta()
+        yield
+        self.new_variances = True
+        yield
         self.since += self.K * self.T
         self.pause += self.K * self.T
-        yield
         self.data.take(row, 1 / R)
+        yield
+        if self.is_built:
+            self.build.learn(row, 1 / R)
         yield
         blocks = self.blocks
         blocks.rows.append((row, 1 / R, last, rough))
@@ -503,8 +526,8 @@ class Oracle:
         """What a tick without a new row does."""
         blocks, ticks = self.blocks, max(self.K - 1, 1)
         if self.tick < ticks:
-            first, end = (math.ceil(6 * tick / ticks) for tick in (self.tick, self.tick + 1))
-            is_busy = first < 2 or len(blocks.rows) == blocks.length
+            first, end = (math.ceil(8 * tick / ticks) for tick in (self.tick, self.tick + 1))
+            is_busy = first < 4 or len(blocks.rows) == blocks.length
             for _ in range(first, end):
                 next(self.steps)
                 is_busy = is_busy or len(blocks.rows) == blocks.length
@@ -627,6 +650,7 @@ class Oracle:
                 self.follow()
             if not settled:
                 self.epsilon = self.rho = 0.0
+            self.new_variances |= not settled or not self.has_row
             self.report(k, filtered.y[at], settled)
             self.y = float(filtered.y[at]) - self.epsilon
 
@@ -648,6 +672,7 @@ class Oracle:
         self.by_gain[self.live.chosen], self.beta[self.live.chosen] = estimates.T
         self.spring = np.where(self.of_spring, [self.by_gain, self.beta], 0)
         self.of: dict[str, float] = defaultdict(float)
+        self.new_coefficients = True
         for beta, (kind, _, prior) in zip(self.beta, self.columns, strict=True):
             self.of[kind] += float(beta) * prior
         self.eta = self.curve()
@@ -683,16 +708,23 @@ class Oracle:
         F = np.where(self.of_spring, self.inputs.F[k], 0.0)
         self.sigma = float(dF @ self.beta + self.inputs.nominal_slope[k])
         tau_e, by_gain = self.torque(k), float(dF @ self.by_gain)
-        variance, of_tau_e = (float(f[chosen] @ self.P @ f[chosen]) for f in (dF, F))
+        if self.new_variances:
+            variance, of_tau_e = (float(f[chosen] @ self.P @ f[chosen]) for f in (dF, F))
+            self.variances, self.new_variances = (variance, of_tau_e), False
+        variance, of_tau_e = self.variances
         self.known = math.sqrt(variance) < 0.2 * self.sigma
-        damping = (
-            float(beta) * prior * self.inputs.l[k] ** index
-            for beta, (kind, index, prior) in zip(self.beta, self.columns, strict=True)
-            if kind == "DAMPING"
-        )
+        if self.new_coefficients:
+            self.of["TURNING"] = math.hypot(of["SIN_Q"], of["COS_Q"])
+            if of["TURNING"]:
+                of["TURNING"] /= max(abs(self.sigma), of["TURNING"])
+            of["DAMPING"] = sum(
+                float(beta) * prior * self.inputs.l[k] ** index
+                for beta, (kind, index, prior) in zip(self.beta, self.columns, strict=True)
+                if kind == "DAMPING"
+            )
+            self.new_coefficients = False
         longest = 3 * p["prior.delay"]
         self.delay = min(max(of["DELAY"], -longest), longest)
-        turning = math.hypot(of["SIN_Q"], of["COS_Q"])
         attenuation = self.rounding * self.live.weight * variance
 
         def std(variance: float, by_gain: float, value: float) -> float:
@@ -716,9 +748,9 @@ class Oracle:
             "tau_coulomb_hat": of["COULOMB"],
             "misfit": math.sqrt(max(1.0, self.q)),
             "bias_hat": of["BIAS"],
-            "damping_hat": sum(damping),
+            "damping_hat": of["DAMPING"],
             "load_friction_hat": of["LOAD"] + of["DRIVE"],
-            "eccentric_hat": turning / max(abs(self.sigma), turning) if turning else 0.0,
+            "eccentric_hat": of["TURNING"],
             "delay_hat": of["DELAY"],
             "hysteresis_hat": of["HYSTERESIS"],
         }
