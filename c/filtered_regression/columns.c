@@ -19,6 +19,7 @@
  * its entry in entry_of.
  */
 #include <stddef.h>
+#include <string.h>
 
 #include "constants.h"
 #include "regression.h"
@@ -248,10 +249,13 @@ void sh_columns_start(sh_columns *columns, const sh_parameters *p)
     list_columns(p, &list);
     columns->size = sh_columns_count(p);
     columns->has_nominal = sh_has_nominal_curve(p);
-    columns->spring = 0;
+    columns->spring = columns->knees = 0;
     /*@ loop unroll SH_MAX_COLUMNS; */
     for (i = 0; i < columns->size; ++i) {
-        columns->spring += sh_column_is(&columns->column[i], SH_IS_SPRING);
+        const sh_column *column = &columns->column[i];
+
+        columns->spring += sh_column_is(column, SH_IS_SPRING);
+        columns->knees += sh_column_is(column, SH_IS_SPRING) && column->kind < SH_COLUMN_DEAD_ZONE;
     }
 }
 
@@ -363,12 +367,12 @@ void sh_joint_point_at(sh_joint_point *point, const sh_columns *columns, const s
 {
     int i;
 
+    (void)memset(point, 0, sizeof *point);
     point->theta = theta;
     point->q = q;
     point->phi = phi;
     point->x = phi / p->range.phi;
     point->stop = stop;
-    point->tau_nominal = point->sigma_nominal = 0;
     set_powers(point, p, set_point);
     if (columns->has_nominal) {
         set_nominal(point, p, set_point);
@@ -406,10 +410,10 @@ sh_real sh_columns_judge_knees(const sh_columns *columns, const sh_parameters *p
     sh_real variance = 0;
     int i;
 
-    for (i = 0; i < columns->spring; ++i) {
+    for (i = columns->knees; i < columns->spring; ++i) {
         const sh_column *column = &columns->column[i];
 
-        if (sh_fabs(beta[i]) > 0 && (may_be_knee(column) || is_knee(column))) {
+        if ((may_be_knee(column) || is_knee(column)) && sh_fabs(beta[i]) > 0) {
             const sh_real slope =
                 at->sigma_nominal + sh_sum_of_products(at->dF, beta, columns->spring);
             const sh_real outside = slope - at->dF[i] * beta[i]; /* of a dead zone */

@@ -20,7 +20,7 @@ static int are_columns(const sh_columns *columns, const sh_parameters *p)
     }
     (void)memset(&started, 0, sizeof started);
     sh_columns_start(&started, p);
-    if (columns->spring != started.spring) {
+    if (columns->spring != started.spring || columns->knees != started.knees) {
         return 0;
     }
     /*@ loop unroll SH_MAX_COLUMNS; */
@@ -70,8 +70,8 @@ static int is_refit(const sh_refit *refit, int size)
 {
     int i;
 
-    if (refit->row < 0 || refit->row > size + SH_REFIT_STEPS || refit->trial < 0 ||
-        refit->trial >= SH_GROUPS || refit->last_trial < 0 || refit->last_trial >= SH_GROUPS) {
+    if (refit->unread < 0 || refit->unread > size || refit->step < 0 ||
+        refit->step > SH_REFIT_STEPS || refit->trial < 0 || refit->trial >= SH_GROUPS || refit->last_trial < 0 || refit->last_trial >= SH_GROUPS) {
         return 0;
     }
     for (i = 0; i < SH_GROUPS; ++i) {

@@ -131,15 +131,15 @@ sh_real sh_information_predict(const sh_information *a, sh_real *x, sh_real w)
 /* Gentleman, for each row i, with the sample x and its weight w that the rows before left. */
 sh_real sh_information_take_rows(sh_information *a, int first, int end, sh_real *x, sh_real w)
 {
-    const int size = a->size;
-    sh_real *row = a->U + row_offset(size, first), gain[2];
+    const int size = a->size, begin = first < size ? first : size, rows = end < size ? end : size;
+    sh_real *row = a->U + row_offset(size, begin), gain[2];
     int i;
 
-    for (i = first; i < end; ++i) {
+    for (i = begin; i < rows; ++i) {
         const int count = size - 1 - i + SH_RIGHT_SIDES;
 
         gain[0] = take_entry(&a->D[i], &x[i], &w);
-        if (i + 1 < end) { /* with the next row */
+        if (i + 1 < rows) { /* with the next row */
             sh_real *next = row + count;
 
             x[i + 1] -= x[i] * row[0];
@@ -155,7 +155,7 @@ sh_real sh_information_take_rows(sh_information *a, int first, int end, sh_real 
             row += count;
         }
     }
-    if (end == size) {
+    if (rows == size) {
         const sh_real error = x[size + SH_RIGHT_Y];
 
         a->squares += sh_fmin(w * error * error, SH_LARGE);

@@ -41,7 +41,7 @@ void sh_information_restart(sh_information *a, int count, sh_real precision);
 sh_real sh_information_take(sh_information *a, sh_real *x, sh_real w);
 
 /* The rows first..end - 1 take what those before them left of a sample. With all rows, one part after the other, this is
- * sh_information_take.
+ * sh_information_take. Rows that there are not, as they are behind the last one, are left out.
  *
  * Returns the weight of what is left in x[end..] for the other rows.
  */

@@ -8,7 +8,7 @@ sh_real sh_posterior_take(sh_posterior *posterior, const sh_real *x, int size, s
 {
     const int own = posterior->information.size;
     const sh_real weight = w * posterior->weight;
-    sh_real row[SH_MAX_ROW];
+    sh_real row[SH_MAX_ROW] = {0};
     int i;
 
     for (i = 0; i < own; ++i) {
@@ -71,7 +71,7 @@ void sh_posterior_remove_noise(sh_posterior *posterior, sh_real prior_B, int i,
     const sh_real all = noise->information * posterior->weight;
     const sh_information *a = &posterior->information;
     sh_real unit[SH_MAX_COLUMNS] = {0}, none[SH_MAX_COLUMNS] = {0}, row[SH_MAX_ROW] = {0};
-    sh_real beta[SH_MAX_COLUMNS], per_gain[SH_MAX_COLUMNS];
+    sh_real beta[SH_MAX_COLUMNS] = {0}, per_gain[SH_MAX_COLUMNS] = {0};
     sh_real G = noise->gain * posterior->weight, D, N, I, Q, lost, less;
 
     unit[i] = row[i] = 1;
@@ -98,7 +98,7 @@ void sh_posterior_estimate(const sh_posterior *posterior, sh_real prior_B, sh_re
                            sh_real *per_gain, int size)
 {
     const sh_last_row last = weighed_last(posterior, prior_B);
-    sh_real own_beta[SH_MAX_COLUMNS], own_gain[SH_MAX_COLUMNS];
+    sh_real own_beta[SH_MAX_COLUMNS] = {0}, own_gain[SH_MAX_COLUMNS] = {0};
     int i;
 
     sh_information_solve(&posterior->information, &last, own_beta, own_gain);

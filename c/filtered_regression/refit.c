@@ -68,7 +68,8 @@ void sh_refit_begin(sh_regression_state *state, const sh_parameters *p)
     refit->posterior.removed = 0;
     refit->posterior.surplus = state->surplus * weight;
     refit->posterior.spread = state->spread * weight * weight;
-    refit->row = 0;
+    refit->unread = state->data.size;
+    refit->step = 0;
 }
 
 void sh_refit_start(sh_regression_state *state, const sh_parameters *p)
@@ -189,8 +190,8 @@ static void take_row(sh_regression_state *state)
 {
     sh_refit *refit = &state->refit;
     const int size = state->columns.size;
-    sh_real x[SH_MAX_ROW];
-    const sh_real w = sh_information_sample(&state->data, size - 1 - refit->row, x);
+    sh_real x[SH_MAX_ROW] = {0};
+    const sh_real w = sh_information_sample(&state->data, refit->unread, x);
 
     (void)sh_posterior_take(&refit->posterior, x, size, w);
 }
@@ -201,7 +202,7 @@ void sh_data_take(sh_regression_state *state)
     const sh_real duration = (sh_real)state->signals.decimation * state->signals.design.T;
     const int size = state->columns.size;
     sh_refit *refit = &state->refit;
-    const int unread = refit->row < size ? size - refit->row : 0;
+    const int unread = refit->unread;
     sh_real x[SH_MAX_ROW], w;
     int i;
 
@@ -210,7 +211,7 @@ void sh_data_take(sh_regression_state *state)
     for (i = 0; i < SH_MAX_ROW; ++i) {
         refit->x[i] = i < unread ? 0 : x[i];
     }
-    refit->w = refit->row > 0 && refit->row <= size + 1 ? w : 0; /* else nothing is read, or it is in use */
+    refit->w = unread < size && refit->step <= 1 ? w : 0; /* else nothing has been read, or it is in use */
     (void)sh_information_take_rows(&state->data, unread, size, x, w);
     refit->time += duration;
     refit->pause += duration;
@@ -235,7 +236,7 @@ static sh_real pause_of(const sh_blocks *blocks)
 /* What a refit does behind its rows: step 0..8, at most two triangular matrices each. Data are forgotten before a refit
  * that is no trial. Returns SH_NEW_*.
  */
-static int take_step(sh_regression_state *state, const sh_parameters *p, int step)
+static int end_step(sh_regression_state *state, const sh_parameters *p, int step)
 {
     sh_refit *refit = &state->refit;
     const int is_trial = refit->trial != 0;
@@ -270,20 +271,16 @@ static int take_step(sh_regression_state *state, const sh_parameters *p, int ste
 int sh_refit_advance(sh_regression_state *state, const sh_parameters *p)
 {
     sh_refit *refit = &state->refit;
-    const int rows = state->columns.size;
     int news = 0;
 
-    if (refit->row >= rows + SH_REFIT_STEPS) {
-        if (refit->pause >= pause_of(&state->blocks)) {
-            sh_refit_begin(state, p);
-        }
-        return 0;
-    }
-    if (refit->row < rows) {
+    if (refit->unread > 0) {
+        refit->unread -= 1;
         take_row(state);
-    } else {
-        news = take_step(state, p, refit->row - rows);
+    } else if (refit->step < SH_REFIT_STEPS) {
+        news = end_step(state, p, refit->step);
+        refit->step += 1;
+    } else if (refit->pause >= pause_of(&state->blocks)) {
+        sh_refit_begin(state, p);
     }
-    refit->row += 1;
     return news;
 }

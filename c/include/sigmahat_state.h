@@ -134,6 +134,7 @@ typedef struct {
 typedef struct {
     int size;        /* number of columns */
     int spring;      /* the first ones, so many, make up the torque of the spring */
+    int knees;       /* from this one on, they may have a slope that changes at once */
     int has_nominal; /* 1: a curve rls.eta_0 is given */
     sh_column column[SH_MAX_COLUMNS];
 } sh_columns;
@@ -257,7 +258,8 @@ typedef struct {
 /* The next posterior while it is computed from all data, refit.c. */
 typedef struct {
     sh_posterior posterior;
-    int row; /* rows of the data that have been read; behind all: what a refit does at its end */
+    int unread; /* rows of the data, the first ones, that have not been read */
+    int step;   /* next one of what a refit does behind the rows */
     sh_real x[SH_MAX_ROW], w; /* what the data left of the newest row, and its weight */
     int trial; /* group that the refit tries, in its last steps of the next one; 0: none, it changes
                   the estimate */

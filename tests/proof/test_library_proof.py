@@ -76,7 +76,7 @@ def with_guards(folder: Path) -> Path:
     shutil.copytree(c_sources.LIBRARY / "include", copy)
     header = copy / "sigmahat_state.h"
     text, count = re.subn(
-        r"^( +)(sh_real|int) (\w+\[[^;]*\]);",
+        r"^( +)(sh_real|int|short) (\w+\[[^;]*\]);",
         lambda line: " ".join(
             f"{line[1]}{line[2]} {array}; {line[2]} guard_{array.split('[')[0]}[8];"
             for array in line[3].split(", ")
@@ -159,8 +159,8 @@ def test_an_index_one_too_far_is_found(tmp_path: Path) -> None:
 def test_information_that_is_not_checked_is_found(tmp_path: Path) -> None:
     file, check = (
         "filtered_regression/information.c",
-        "if (sh_fabs(xi) > 0 && after > SH_SMALLEST_D)",
+        "if (!(sh_fabs(*x) > 0 && after > SH_SMALLEST_D))",
     )
-    of = with_fault(c_sources.LIBRARY, tmp_path / "c", file, check, "if (sh_fabs(xi) > 0)")
+    of = with_fault(c_sources.LIBRARY, tmp_path / "c", file, check, "if (!(sh_fabs(*x) > 0))")
     (alarm,) = part("information", "positive", "double", tmp_path, of, SH_MAX_COLUMNS=1).alarms
     assert alarm.startswith("information.c:") and "positive" in alarm

@@ -141,12 +141,12 @@ def test_a_stiffness_that_is_too_large_for_the_next_row_does_not_block_all_rows(
 
 
 def test_the_variance_of_a_direction_that_is_well_known_does_not_overflow(c: Library) -> None:
-    a, last = c.new("sh_information"), c.new("sh_last_row")
+    a = c.new("sh_information")
     first, second = reals(c, [1e20]), reals(c, [1.0])
     c.lib.sh_information_start(a, 1, 1e30)
-    last[0] = c.lib.sh_information_last(a)
-    found = c.lib.sh_information_combine(a, last, c.pointer(first), c.pointer(second))
-    assert found.first.variance == pytest.approx(1e10)
+    D = c.lib.sh_information_last(a).D
+    found = c.lib.sh_information_variances(a, D, c.pointer(first), c.pointer(second))
+    assert found.first == pytest.approx(1e10)
 
 
 def test_an_initial_curve_that_overflows_starts_with_finite_outputs(c: Library) -> None:

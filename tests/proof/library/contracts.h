@@ -24,6 +24,24 @@
 */
 sh_real sh_information_take(sh_information *a, sh_real *x, sh_real w);
 
+/*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
+    requires 0 <= first <= SH_MAX_COLUMNS && 0 <= end <= SH_MAX_COLUMNS;
+    requires \valid(x + (0 .. a->size + SH_RIGHT_SIDES - 1));
+    requires \initialized(x + (0 .. a->size + SH_RIGHT_SIDES - 1));
+    assigns \result, a->D[0 .. SH_MAX_COLUMNS - 1], a->U[0 .. SH_MAX_TRIANGLE - 1], a->squares,
+            x[0 .. SH_MAX_COLUMNS + SH_RIGHT_SIDES - 1]
+            \from *a, first, end, x[0 .. SH_MAX_COLUMNS + SH_RIGHT_SIDES - 1], w;
+*/
+sh_real sh_information_take_rows(sh_information *a, int first, int end, sh_real *x, sh_real w);
+
+/*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
+    requires \valid(x + (0 .. a->size + SH_RIGHT_SIDES - 1));
+    requires \initialized(x + (0 .. a->size + SH_RIGHT_SIDES - 1));
+    assigns \result, x[0 .. SH_MAX_COLUMNS + SH_RIGHT_SIDES - 1]
+            \from *a, x[0 .. SH_MAX_COLUMNS + SH_RIGHT_SIDES - 1], w;
+*/
+sh_real sh_information_predict(const sh_information *a, sh_real *x, sh_real w);
+
 /*@ requires 1 <= size <= SH_MAX_COLUMNS;
     assigns a->D[0 .. SH_MAX_COLUMNS - 1], a->U[0 .. SH_MAX_TRIANGLE - 1], a->squares \from precision;
     assigns a->size \from size;
@@ -54,18 +72,19 @@ sh_last_row sh_information_last(const sh_information *a);
 void sh_information_set_last(sh_information *a, const sh_last_row *last);
 
 /*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
-    assigns beta[0 .. SH_MAX_COLUMNS - 1] \from *a, *last;
+    assigns beta[0 .. SH_MAX_COLUMNS - 1], per_gain[0 .. SH_MAX_COLUMNS - 1] \from *a, *last;
 */
-void sh_information_solve(const sh_information *a, const sh_last_row *last, sh_real *beta);
+void sh_information_solve(const sh_information *a, const sh_last_row *last, sh_real *beta,
+                          sh_real *per_gain);
 
 /*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
     requires \initialized(first + (0 .. a->size - 1));
     requires \initialized(second + (0 .. a->size - 1));
     assigns \result, first[0 .. SH_MAX_COLUMNS - 1], second[0 .. SH_MAX_COLUMNS - 1]
-            \from *a, *last, first[0 .. SH_MAX_COLUMNS - 1], second[0 .. SH_MAX_COLUMNS - 1];
+            \from *a, last_D, first[0 .. SH_MAX_COLUMNS - 1], second[0 .. SH_MAX_COLUMNS - 1];
 */
-sh_combinations sh_information_combine(const sh_information *a, const sh_last_row *last,
-                                       sh_real *first, sh_real *second);
+sh_variances sh_information_variances(const sh_information *a, sh_real last_D, sh_real *first,
+                                      sh_real *second);
 
 /*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
     requires \initialized(beta + (0 .. a->size - 1));

@@ -26,12 +26,17 @@ void columns(void)
     a.size = SH_MAX_COLUMNS;
     any_vectors();
     sh_information_take(&a, x, any_real());
+    sh_information_predict(&a, x, any_real());
+    for (i = 0; i <= SH_MAX_COLUMNS; ++i) {
+        sh_information_take_rows(&a, 0, i, x, any_real());
+        sh_information_take_rows(&a, i, SH_MAX_COLUMNS, x, any_real());
+    }
     sh_information_squares(&a, c);
     sh_information_forget(&a, any_real(), any_real());
     sh_information_drift(&a, v, any_real());
     last = sh_information_last(&a);
-    sh_information_solve(&a, &last, v);
-    sh_information_combine(&a, &last, c, v);
+    sh_information_solve(&a, &last, v, c);
+    sh_information_variances(&a, last.D, c, v);
     sh_information_set_last(&a, &last);
     for (i = 0; i < SH_MAX_COLUMNS; ++i) {
         sh_information_sample(&a, i, x);
@@ -52,10 +57,13 @@ void rows(void)
     for (size = 1; size <= SH_MAX_COLUMNS; ++size) {
         ANYTHING(a.D);
         ANYTHING(a.U);
+        ANYTHING(a.squares);
         a.size = size;
         for (i = 0; i < SH_MAX_COLUMNS; ++i) {
             sh_information_sample(&a, i, x);
             sh_information_restart(&a, i + 1, any_real());
+            sh_information_take_rows(&a, 0, i + 1, x, any_real());
+            sh_information_take_rows(&a, i + 1, SH_MAX_COLUMNS, x, any_real());
         }
     }
     //@ assert guards: !\initialized(&a.guard_D[0]) && !\initialized(&a.guard_U[0]);
