@@ -141,8 +141,9 @@ def test_the_effect_of_the_gain_is_that_of_a_wrong_gain(
     z = MisfitJoint(duration=3.0, tau_coulomb=0.0).measurements()
     larger = z.copy()
     larger[:, 3] *= 1.01
-    # Without Coulomb friction, whose size decides on the weights of samples.
-    settings = {**SETTINGS, **PLAIN, "prior.tau_coulomb": 0.0, **values}
+    # Without Coulomb friction, whose size decides on the weights of samples, and without misfit.
+    weights = {"prior.tau_coulomb": 0.0, "regression.memory": 0.0}
+    settings = {**SETTINGS, **PLAIN, **weights, **values}
     first, second = (Estimator(c, settings).run(samples)[-1] for samples in (z, larger))
     change = (second["sigma"] / first["sigma"] - 1) / 0.01
     assert first["sigma_per_gain"] == pytest.approx(change, rel=5e-3)
