@@ -274,13 +274,17 @@ void sh_information_forget(sh_information *a, sh_real factor, sh_real least)
 /* In terms of the information A = U' D U, the step is A -= A v v' A c / (1 + c v' A v): a sample of
  * negative weight with the regressor v' A.
  */
-sh_real sh_information_drift(sh_information *a, const sh_real *v, sh_real c)
+sh_real sh_information_drift_sample(const sh_information *a, const sh_real *v, sh_real c,
+                                    sh_real *row)
 {
     const int size = a->size;
     const sh_real *of_U = a->U;
-    sh_real row[SH_MAX_ROW] = {0}, vAv = 0;
+    sh_real vAv = 0;
     int i, j;
 
+    for (i = 0; i < size + SH_RIGHT_SIDES; ++i) {
+        row[i] = 0;
+    }
     for (i = 0; i < size; ++i) { /* row = v' U' D [U, U z] */
         const int count = size - 1 - i;
         const sh_real along = v[i] + sh_sum_of_products(of_U, v + i + 1, count);
@@ -294,9 +298,18 @@ sh_real sh_information_drift(sh_information *a, const sh_real *v, sh_real c)
         of_U += count + SH_RIGHT_SIDES;
     }
     if (!(vAv > 0) || !isfinite(vAv)) { /* nothing is known along v; or an overflow */
-        return 1;
+        return 0;
     }
     c = sh_fmin(c, SH_LARGEST_GROWTH / vAv);
-    (void)sh_information_take(a, row, -c / (1 + c * vAv));
-    return 1 / (1 + c * vAv);
+    return -c / (1 + c * vAv);
+}
+
+sh_real sh_information_drift(sh_information *a, const sh_real *v, sh_real c)
+{
+    sh_real row[SH_MAX_ROW] = {0};
+    const sh_real w = sh_information_drift_sample(a, v, c, row);
+    const sh_real share = 1 + w * sh_sum_of_products(row, v, a->size);
+
+    (void)sh_information_take(a, row, w);
+    return share;
 }

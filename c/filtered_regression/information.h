@@ -99,4 +99,10 @@ void sh_information_forget(sh_information *a, sh_real factor, sh_real least);
  */
 sh_real sh_information_drift(sh_information *a, const sh_real *v, sh_real c);
 
+/* The same in two parts: sets the row [size: size + SH_RIGHT_SIDES] of a sample. Returns its weight, <= 0, with which
+ * sh_information_take lets the parameters change.
+ */
+sh_real sh_information_drift_sample(const sh_information *a, const sh_real *v, sh_real c,
+                                    sh_real *row);
+
 #endif

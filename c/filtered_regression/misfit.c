@@ -232,22 +232,6 @@ void sh_misfit_judge(sh_regression_state *state, const sh_parameters *p)
 
 /* ---- drift of friction, detail 10 -------------------------------------------------------- */
 
-/* Process noise of viscous or Coulomb friction. */
-static void let_friction_drift(const sh_columns *columns, int kind, sh_information *a,
-                               sh_real variance)
-{
-    int i;
-
-    for (i = 0; i < columns->size; ++i) {
-        if (columns->column[i].kind == kind) {
-            sh_real v[SH_MAX_COLUMNS] = {0};
-
-            v[i] = 1;
-            (void)sh_information_drift(a, v, variance);
-        }
-    }
-}
-
 /* Whether friction drifts, by the residuals of both regressions. */
 static void judge_drift(sh_regression_state *state)
 {
@@ -265,17 +249,40 @@ static void judge_drift(sh_regression_state *state)
     }
 }
 
+/* Process noise of viscous or Coulomb friction: sets its sample in an even step, and takes it in an odd one. */
+static void let_friction_drift(sh_refit *refit, const sh_columns *columns, sh_information *a,
+                               sh_real variance, int step)
+{
+    const int kind = step % 4 < 2 ? SH_COLUMN_VISCOUS : SH_COLUMN_COULOMB;
+    int i;
+
+    if (step % 2 != 0) {
+        if (refit->w < 0) {
+            (void)sh_information_take(a, refit->x, refit->w);
+        }
+        return;
+    }
+    refit->w = 0; /* the motor may have no such friction */
+    for (i = 0; i < columns->size; ++i) {
+        if (columns->column[i].kind == kind) {
+            sh_real v[SH_MAX_COLUMNS] = {0};
+
+            v[i] = 1;
+            refit->w = sh_information_drift_sample(a, v, variance, refit->x);
+        }
+    }
+}
+
 void sh_friction_drift(sh_regression_state *state, sh_real time, int step)
 {
-    const int kind = step % 2 == 0 ? SH_COLUMN_VISCOUS : SH_COLUMN_COULOMB;
     const sh_real variance = SH_FRICTION_DRIFT * time;
 
-    if (step < 2) {
-        let_friction_drift(&state->columns, kind, &state->blocks.drifting, variance);
+    if (step < 4) {
+        let_friction_drift(&state->refit, &state->columns, &state->blocks.drifting, variance, step);
     } else if (state->friction_drifts) {
-        let_friction_drift(&state->columns, kind, &state->data, variance);
+        let_friction_drift(&state->refit, &state->columns, &state->data, variance, step);
     }
-    if (step == 1) {
+    if (step == 3) {
         judge_drift(state);
     }
 }

@@ -196,6 +196,12 @@ static void take_row(sh_regression_state *state)
     (void)sh_posterior_take(&refit->posterior, x, size, w);
 }
 
+/* Whether the posterior of the refit still takes rows: it is in use from step 1 on. */
+static int is_open(const sh_refit *refit)
+{
+    return refit->step <= 1;
+}
+
 void sh_data_take(sh_regression_state *state)
 {
     const sh_row *row = &state->row;
@@ -208,10 +214,10 @@ void sh_data_take(sh_regression_state *state)
 
     (void)memcpy(x, row->x, sizeof x);
     w = sh_information_take_rows(&state->data, 0, unread, x, row->w);
-    for (i = 0; i < SH_MAX_ROW; ++i) {
+    for (i = 0; i < SH_MAX_ROW && is_open(refit); ++i) {
         refit->x[i] = i < unread ? 0 : x[i];
+        refit->w = unread < size ? w : 0; /* 0: nothing has been read */
     }
-    refit->w = unread < size && refit->step <= 1 ? w : 0; /* else nothing has been read, or it is in use */
     (void)sh_information_take_rows(&state->data, unread, size, x, w);
     refit->time += duration;
     refit->pause += duration;
@@ -221,7 +227,7 @@ void sh_refit_take(sh_regression_state *state)
 {
     sh_refit *refit = &state->refit;
 
-    if (refit->w > 0) {
+    if (is_open(refit) && refit->w > 0) {
         (void)sh_posterior_take(&refit->posterior, refit->x, state->columns.size, refit->w);
     }
 }
@@ -233,8 +239,8 @@ static sh_real pause_of(const sh_blocks *blocks)
                                            : SH_REFIT_PAUSE * blocks->count * SH_BLOCK;
 }
 
-/* What a refit does behind its rows: step 0..8, at most two triangular matrices each. Data are forgotten before a refit
- * that is no trial. Returns SH_NEW_*.
+/* What a refit does behind its rows: step 0..12. Friction drifts, and data are forgotten, before a refit that is no
+ * trial. Returns SH_NEW_*.
  */
 static int end_step(sh_regression_state *state, const sh_parameters *p, int step)
 {
@@ -255,14 +261,13 @@ static int end_step(sh_regression_state *state, const sh_parameters *p, int step
         sh_misfit_judge(state, p);
         set_friction_std(state, p);
         plan_refit(state, p);
-    } else if (step >= 4 && step < SH_REFIT_STEPS - 1 && !is_trial) {
+        refit->pause = 0;
+        refit->step = refit->trial != 0 ? SH_REFIT_STEPS : refit->step; /* nothing else before a trial */
+    } else if (step >= 4 && step < SH_REFIT_STEPS - 1) {
         sh_friction_drift(state, refit->time, step - 4);
     } else if (step == SH_REFIT_STEPS - 1) {
-        if (!is_trial) {
-            sh_forget(state, p, refit->time);
-            refit->time = 0;
-        }
-        refit->pause = 0;
+        sh_forget(state, p, refit->time);
+        refit->time = 0;
     }
     return news;
 }
@@ -277,8 +282,8 @@ int sh_refit_advance(sh_regression_state *state, const sh_parameters *p)
         refit->unread -= 1;
         take_row(state);
     } else if (refit->step < SH_REFIT_STEPS) {
-        news = end_step(state, p, refit->step);
         refit->step += 1;
+        news = end_step(state, p, refit->step - 1);
     } else if (refit->pause >= pause_of(&state->blocks)) {
         sh_refit_begin(state, p);
     }

@@ -8,7 +8,7 @@
 
 enum {
     SH_ROW_STEPS = 8,  /* in which a row changes the estimate, and what is behind it */
-    SH_REFIT_STEPS = 9 /* of a refit behind its rows, before it pauses */
+    SH_REFIT_STEPS = 13 /* of a refit behind its rows, before it pauses */
 };
 
 /* What a step changes, which may be added up. */
@@ -248,7 +248,7 @@ void sh_blocks_interrupt(sh_blocks *blocks);
 /* Detail 8: sets misfit and variance_factor by the estimate beta. */
 void sh_misfit_judge(sh_regression_state *state, const sh_parameters *p);
 
-/* Step 0..3 of detail 10: lets friction drift for `time` [s], in the data if the blocks contradict each other less
+/* Step 0..7 of detail 10, of which every second one takes the sample of the one before: lets friction drift for `time` [s], in the data if the blocks contradict each other less
  * with it.
  */
 void sh_friction_drift(sh_regression_state *state, sh_real time, int step);

@@ -96,7 +96,7 @@ def test_a_damaged_member_is_found(c: Library, member: str, place: int, value: i
         *((flag, 0, 1) for flag in ("friction_drifts", "stiffness_known", "signals.begun")),
         *((flag, 0, 1) for flag in ("refit.used", "change.following")),
         ("refit.unread", 0, SIZE),
-        ("refit.step", 0, 9),
+        ("refit.step", 0, 13),
         *((group, 0, 6) for group in ("refit.trial", "refit.last_trial")),
         *((sums, SIZE, SIZE) for sums in ("data.size", "change.changed.size")),
         *((f"blocks.{sums}.size", SIZE, SIZE) for sums in ("constant", "drifting", "recent")),

@@ -168,7 +168,8 @@ MISFITS: Mapping[str, tuple[Array | Mapping[str, Any], Mapping[str, float], int]
 }
 # The other three look like it.
 DRIFTING = (
-    *("friction that warms up", "set-point", "encoder of the motor"),
+    "friction that warms up",
+    "set-point",
 )
 
 

@@ -85,10 +85,13 @@ class Information:
         self.matrix = (rows.T * np.maximum(D * keep, self.least)) @ rows
         self.matrix[-1, -1] += rest * keep
 
-    def walk(self, v: Long, c: float) -> None:
-        """Adds c v v' to the inverse."""
+    def walk_sample(self, v: Long, c: float) -> tuple[Long, float]:
+        """The row, and its weight, that add c v v' to the inverse."""
         g = self.matrix[:, : self.size] @ v
-        self.matrix -= np.outer(g, g) * (c / (1 + c * (v @ g[: self.size])))
+        return g, -c / (1 + c * float(v @ g[: self.size]))
+
+    def walk(self, v: Long, c: float) -> None:
+        self.take(*self.walk_sample(v, c))
 
     def squares(self, beta: Long) -> float:
         """Weighted sum of squares of y - x' beta."""
@@ -300,16 +303,14 @@ class Oracle:
             self.new_variances |= not self.trial
             yield
             self.plan()
-            yield
-            for step in range(4):
-                if not self.trial:
-                    self.watch_friction(self.since, step)
-                yield
             self.pause = 0.0
+            yield
+            for step in range(0 if self.trial else 4):
+                yield from self.watch_friction(self.since, step)
             if not self.trial:
                 self.forget(self.since)
                 self.since = 0.0
-            yield
+                yield
             while self.pause < self.shortest_pause():
                 yield
 
@@ -382,19 +383,26 @@ class Oracle:
         self.trial = next((group for group in following if group in ready), 0)
         self.last_trial = self.trial or self.last_trial
 
-    def watch_friction(self, time: float, step: int) -> None:
-        """Step 0 and 1: the blocks, of viscous and Coulomb friction; 2 and 3: the data."""
+    def watch_friction(self, time: float, step: int) -> Iterator[None]:
+        """Step 0 and 1: the blocks, of viscous and Coulomb friction; 2 and 3: the data. Each takes two
+        ticks, in which a row may come."""
         blocks, N = self.blocks, self.blocks.count
         kind = ("VISCOUS", "COULOMB")[step % 2]
         sums = blocks.walking if step < 2 else self.data
-        if kind in self.kinds and (step < 2 or self.friction_drifts):
-            sums.walk(identity(self.n)[self.kinds.index(kind)], 1e-3 * time)
+        does_drift = kind in self.kinds and (step < 2 or self.friction_drifts)
+        if does_drift:
+            v = identity(self.n)[self.kinds.index(kind)]
+            sample = sums.walk_sample(v, 1e-3 * time)
+        yield
+        if does_drift:
+            sums.take(*sample)
         if step == 1 and 2 * self.n < N:
             constant, walking = blocks.all.rest, blocks.walking.rest
             if walking < 0.8 * constant and constant > (N - self.n) * threshold(N) / N:
                 self.friction_drifts = True
             elif walking > 0.95 * constant:
                 self.friction_drifts = False
+        yield
 
     def forget(self, time: float) -> None:
         blocks, memory, drift = self.blocks, self.p["regression.memory"], self.p["regression.drift"]
