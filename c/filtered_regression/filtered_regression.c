@@ -60,7 +60,8 @@ static sh_real evaluate_at(const sh_regression_state *state, const sh_parameters
     sh_real torque, torque_per_gain, stiffness, stiffness_per_gain;
 
     sh_scalar_products(at->F, state->beta, state->per_gain, count, &torque, &torque_per_gain);
-    sh_scalar_products(at->dF, state->beta, state->per_gain, count, &stiffness, &stiffness_per_gain);
+    sh_scalar_products(at->dF, state->beta, state->per_gain, count, &stiffness,
+                       &stiffness_per_gain);
     point->tau_e = at->tau_nominal + torque;
     point->sigma = at->sigma_nominal + stiffness;
     point->tau_e_std = sh_std_deviation(variances->first + sh_square(gain * torque_per_gain) +
@@ -483,9 +484,12 @@ static int tick_filtered_regression(sh_estimator *estimator, const sh_parameters
     if (complete && !use_row(state, p)) { /* 3. to 5. Weigh it, predict it, and update. */
         return refuse(state, &before);
     }
-    news = settled && state->row.w > 0 ? 0 : SH_NEW_VARIANCES; /* at each tick as long as there are no rows */
+    news = settled && state->row.w > 0
+               ? 0
+               : SH_NEW_VARIANCES; /* at each tick as long as there are no rows */
     if (!complete || state->signals.decimation == 1) {
-        news |= take_steps(state, p); /* 6. Estimate, data, misfit, forgetting, choice of columns. */
+        news |=
+            take_steps(state, p); /* 6. Estimate, data, misfit, forgetting, choice of columns. */
     }
     if (!settled) {
         state->row.epsilon = state->row.rho = 0;

@@ -71,7 +71,8 @@ static int is_refit(const sh_refit *refit, int size)
     int i;
 
     if (refit->unread < 0 || refit->unread > size || refit->step < 0 ||
-        refit->step > SH_REFIT_STEPS || refit->trial < 0 || refit->trial >= SH_GROUPS || refit->last_trial < 0 || refit->last_trial >= SH_GROUPS) {
+        refit->step > SH_REFIT_STEPS || refit->trial < 0 || refit->trial >= SH_GROUPS ||
+        refit->last_trial < 0 || refit->last_trial >= SH_GROUPS) {
         return 0;
     }
     for (i = 0; i < SH_GROUPS; ++i) {

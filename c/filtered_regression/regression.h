@@ -7,7 +7,7 @@
 #include "information.h"
 
 enum {
-    SH_ROW_STEPS = 8,  /* in which a row changes the estimate, and what is behind it */
+    SH_ROW_STEPS = 8,   /* in which a row changes the estimate, and what is behind it */
     SH_REFIT_STEPS = 13 /* of a refit behind its rows, before it pauses */
 };
 

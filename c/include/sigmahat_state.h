@@ -216,10 +216,10 @@ typedef struct {
 typedef struct {
     sh_information information;
     short column[SH_MAX_COLUMNS]; /* which column of the data each of its own is */
-    sh_real weight;             /* of the data, one over the variance factor of the misfit [1] */
-    sh_real surplus;            /* information about b that is rounding, still contained [1] */
-    sh_real removed;            /* removed so far [1] */
-    sh_real spread;             /* variance of both, as it acts on the estimate of b [1] */
+    sh_real weight;               /* of the data, one over the variance factor of the misfit [1] */
+    sh_real surplus;              /* information about b that is rounding, still contained [1] */
+    sh_real removed;              /* removed so far [1] */
+    sh_real spread;               /* variance of both, as it acts on the estimate of b [1] */
 } sh_posterior;
 
 /* Means over blocks of samples, misfit.c. */
@@ -260,7 +260,8 @@ typedef struct {
     sh_posterior posterior;
     int unread; /* rows of the data, the first ones, that have not been read */
     int step;   /* next one of what a refit does behind the rows */
-    sh_real x[SH_MAX_ROW], w; /* sample for the next step, and its weight: what the data left of the newest row, or
+    sh_real x[SH_MAX_ROW],
+        w;     /* sample for the next step, and its weight: what the data left of the newest row, or
                                  process noise of friction */
     int trial; /* group that the refit tries, in its last steps of the next one; 0: none, it changes
                   the estimate */
@@ -296,11 +297,11 @@ typedef struct {
     sh_real per_gain[SH_MAX_COLUMNS]; /* its change with the relative gain of the torque */
     sh_variances variances;           /* of the torque of the spring [(N.m)2], and of the stiffness
                                          [(N.m/rad)2], if the gain is right */
-    sh_real y;                    /* of the sample, as it was fitted [N.m] */
-    sh_real sigma;                /* stiffness [N.m/rad] */
-    sh_real delay;                /* of the torque [s] */
-    sh_real viscous, inertia;     /* relative errors of motor.D_theta and motor.B [1] */
-    int stiffness_known;          /* 1: columns that need the stiffness have an effect */
+    sh_real y;                        /* of the sample, as it was fitted [N.m] */
+    sh_real sigma;                    /* stiffness [N.m/rad] */
+    sh_real delay;                    /* of the torque [s] */
+    sh_real viscous, inertia;         /* relative errors of motor.D_theta and motor.B [1] */
+    int stiffness_known;              /* 1: columns that need the stiffness have an effect */
 } sh_regression_state;
 
 /* The estimator. */

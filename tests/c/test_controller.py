@@ -55,8 +55,8 @@ def test_a_processor_computes_what_the_host_computes(
         for t in (HOST, target)
     )
     assert 0 < np.count_nonzero(here["valid"] == 0) < 30
-    # Torque and stiffness of FilteredRegression are sums of up to 44 terms that nearly cancel. These
-    # terms, which have the coefficients eta, are less exact than the other outputs.
+    # Torque and stiffness of FilteredRegression are sums of up to 44 terms that nearly cancel. So
+    # they are less exact than the other outputs, and so are their coefficients eta.
     terms = 10 if configuration in REGRESSION else 1
     for name in here.dtype.names or ():
         factor = 2 * terms if name in ("eta", "tau_e", "sigma") else terms

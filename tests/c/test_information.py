@@ -39,11 +39,11 @@ class Information:
 
     def solve(self, side: int) -> Array:
         """The estimate for a side."""
-        found, last = np.zeros((SIDES, self.size)), self.c.new("sh_last_row")
+        beta, per_gain, last = np.zeros(self.size), np.zeros(self.size), self.c.new("sh_last_row")
         last[0] = self.c.lib.sh_information_last(self.a)
-        beta, per_gain = self.c.pointer(found[Y]), self.c.pointer(found[1 - Y])
-        self.c.lib.sh_information_solve(self.a, last, beta, per_gain)
-        return found[side]
+        both = (self.c.pointer(beta), self.c.pointer(per_gain))
+        self.c.lib.sh_information_solve(self.a, last, *both)
+        return beta if side == Y else per_gain
 
     def variances(self, first: Array, second: Array) -> tuple[float, float]:
         """Variances of two combinations."""

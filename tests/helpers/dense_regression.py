@@ -231,18 +231,16 @@ class Oracle:
         self.samples: list[int] = []  # of the next row
         # What the last row still changes, and ticks since it as far as there is something.
         self.steps, self.tick = iter(list[None]()), self.K
-        self.friction_drifts = self.known = self.is_built = False
-        # At each tick until there is a row: variances of stiffness and torque by the posterior.
-        self.new_variances, self.has_row = True, False
-        self.variances = (0.0, 0.0)
+        self.friction_drifts = self.known = self.is_built = self.has_row = False
+        self.new_variances = False  # of stiffness and torque, to be computed at this tick
         self.set_beta()
         self.sigma = self.y = self.delay = 0.0
         self.resting = self.unsure = 0
         self.settling, self.starting = 0.0, 12 / self.w
         self.rough = 0.0
-        self.judged, self.usual_misfit = 0, 1.0
         self.once_used: set[int] = set()  # groups that a trial has shown to be needed
-        self.changes = 0  # passes in which the recent data agreed by themselves
+        # Passes in which the recent data agreed by themselves; blocks of the usual misfit.
+        self.changes, self.judged, self.usual_misfit = 0, 0, 1.0
         self.out: dict[str, list[Any]] = defaultdict(list)
         pulse = np.concatenate([[0.0], np.full(self.K, 1 / self.K), np.zeros(20000)])
         response = [through(pulse, order, self.w, self.T) for order in (0, 2)]
@@ -384,8 +382,8 @@ class Oracle:
         self.last_trial = self.trial or self.last_trial
 
     def watch_friction(self, time: float, step: int) -> Iterator[None]:
-        """Step 0 and 1: the blocks, of viscous and Coulomb friction; 2 and 3: the data. Each takes two
-        ticks, in which a row may come."""
+        """Step 0 and 1: the blocks, of viscous and Coulomb friction; 2 and 3: the data. Each takes
+        two ticks, between which a row may come."""
         blocks, N = self.blocks, self.blocks.count
         kind = ("VISCOUS", "COULOMB")[step % 2]
         sums = blocks.walking if step < 2 else self.data
