@@ -31,9 +31,9 @@ static void begin(sh_regression_state *state)
     change->evidence = change->blocks = 0;
 }
 
-/* A block that contradicts hypothesis 1 while one block alone may be all the evidence: the spring has changed behind t. Then t
- * becomes the begin of this block, which hypothesis 0 has not taken yet, and hypothesis 1 leaves out: in it, the spring
- * changes.
+/* A block that contradicts hypothesis 1 while one block alone may be all the evidence: the spring has changed behind t.
+ * Then t becomes the begin of this block, which hypothesis 0 has not taken yet, and hypothesis 1 leaves out: in it, the
+ * spring changes.
  */
 int sh_change_begins_anew(sh_regression_state *state, sh_real error)
 {

@@ -45,9 +45,9 @@ static sh_variances variances_at(const sh_regression_state *state, const sh_para
                                   state->columns.spring);
 }
 
-/* tau_e = F' beta, (21), and sigma = dF' beta, (23), with the curve rls.eta_0. To the variances c' P c of both are added
- * (s_g d(c' beta)/dg)^2 with the gain g of the torque (point 8), (share c' beta)^2 with the share by which rounding
- * makes the stiffness too small (point 5), and what is not known beside a knee [(N.m/rad)2] (point 6). Returns
+/* tau_e = F' beta, (21), and sigma = dF' beta, (23), with the curve rls.eta_0. To the variances c' P c of both are
+ * added (s_g d(c' beta)/dg)^2 with the gain g of the torque (point 8), (share c' beta)^2 with the share by which
+ * rounding makes the stiffness too small (point 5), and what is not known beside a knee [(N.m/rad)2] (point 6). Returns
  * d sigma / dg.
  */
 static sh_real evaluate_at(const sh_regression_state *state, const sh_parameters *p,

@@ -40,8 +40,8 @@ void sh_information_restart(sh_information *a, int count, sh_real precision);
  */
 sh_real sh_information_take(sh_information *a, sh_real *x, sh_real w);
 
-/* The rows first..end - 1 take what those before them left of a sample. With all rows, one part after the other, this is
- * sh_information_take. Rows that there are not, as they are behind the last one, are left out.
+/* The rows first..end - 1 take what those before them left of a sample. With all rows, one part after the other, this
+ * is sh_information_take. Numbers behind the last row count as the number of rows.
  *
  * Returns the weight of what is left in x[end..] for the other rows.
  */
@@ -72,8 +72,8 @@ void sh_information_set_last(sh_information *a, const sh_last_row *last);
 void sh_information_solve(const sh_information *a, const sh_last_row *last, sh_real *beta,
                           sh_real *per_gain);
 
-/* Variances c' (U' D U)^-1 c of two combinations c' beta [size: size], which are overwritten. last_D is the entry of D of
- * another last row.
+/* Variances c' (U' D U)^-1 c of two combinations c' beta [size: size], which are overwritten. last_D is the entry of D
+ * of another last row.
  */
 sh_variances sh_information_variances(const sh_information *a, sh_real last_D, sh_real *first,
                                       sh_real *second);

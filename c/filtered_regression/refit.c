@@ -1,6 +1,6 @@
 /* Refits: how the misfit, and the choice of columns, act on past samples in bounded time (detail 6). A row of
  * the data with its weight is a sample for another triangle: so a new posterior is computed beside the present
- * one, from one row of the data in each tick, beginning with the last. A new row passes the rows of the data from the
+ * one, from two rows of the data in each tick, beginning with the last. A new row passes the rows of the data from the
  * first to the last: what those that have not been read leave of it is for the new posterior, too. Every second refit
  * is a trial of a group of columns, and its estimate is not used.
  */
@@ -190,9 +190,10 @@ static void take_row(sh_regression_state *state)
 {
     sh_refit *refit = &state->refit;
     const int size = state->columns.size;
-    sh_real x[SH_MAX_ROW] = {0};
-    const sh_real w = sh_information_sample(&state->data, refit->unread, x);
+    sh_real x[SH_MAX_ROW] = {0}, w;
 
+    refit->unread -= 1;
+    w = sh_information_sample(&state->data, refit->unread, x);
     (void)sh_posterior_take(&refit->posterior, x, size, w);
 }
 
@@ -214,9 +215,11 @@ void sh_data_take(sh_regression_state *state)
 
     (void)memcpy(x, row->x, sizeof x);
     w = sh_information_take_rows(&state->data, 0, unread, x, row->w);
-    for (i = 0; i < SH_MAX_ROW && is_open(refit); ++i) {
-        refit->x[i] = i < unread ? 0 : x[i];
+    if (is_open(refit)) {
         refit->w = unread < size ? w : 0; /* 0: nothing has been read */
+        for (i = 0; i < SH_MAX_ROW; ++i) {
+            refit->x[i] = i < unread ? 0 : x[i];
+        }
     }
     (void)sh_information_take_rows(&state->data, unread, size, x, w);
     refit->time += duration;
@@ -280,8 +283,10 @@ int sh_refit_advance(sh_regression_state *state, const sh_parameters *p)
     int news = 0;
 
     if (refit->unread > 0) {
-        refit->unread -= 1;
         take_row(state);
+        if (refit->unread > 0) {
+            take_row(state);
+        }
     } else if (refit->step < SH_REFIT_STEPS) {
         refit->step += 1;
         news = end_step(state, p, refit->step - 1);

@@ -248,8 +248,8 @@ void sh_blocks_interrupt(sh_blocks *blocks);
 /* Detail 8: sets misfit and variance_factor by the estimate beta. */
 void sh_misfit_judge(sh_regression_state *state, const sh_parameters *p);
 
-/* Step 0..7 of detail 10, of which every second one takes the sample of the one before: lets friction drift for `time` [s], in the data if the blocks contradict each other less
- * with it.
+/* Step 0..7 of detail 10, of which every second one takes the sample of the one before: lets friction drift for
+ * `time` [s], in the data if the blocks contradict each other less with it.
  */
 void sh_friction_drift(sh_regression_state *state, sh_real time, int step);
 
@@ -293,7 +293,7 @@ void sh_data_take(sh_regression_state *state);
 /* Takes what the newest row left for the refit, if one is running. Nothing may be read in between. */
 void sh_refit_take(sh_regression_state *state);
 
-/* Takes one row of the data of all samples, or does the next step at the end of a refit. Returns SH_NEW_*. */
+/* Takes two rows of the data of all samples, or does the next step at the end of a refit. Returns SH_NEW_*. */
 int sh_refit_advance(sh_regression_state *state, const sh_parameters *p);
 
 #endif

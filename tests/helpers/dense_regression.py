@@ -288,7 +288,7 @@ class Oracle:
             self.build.spread = self.spread * weight**2
             self.build.of_drive = self.of_drive * weight
             yield
-            for _ in range(self.n):
+            for _ in range(math.ceil(self.n / 2)):
                 yield
             if self.trial:
                 self.end_trial()

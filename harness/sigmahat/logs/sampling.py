@@ -278,7 +278,9 @@ _LARGEST = 1e12  # SH_LARGEST_MEASUREMENT of sigmahat.h
 
 def refused(values: Array) -> NDArray[np.bool_]:
     """Ticks that the estimator skips because of their values [size: ticks x ports]."""
-    skipped: NDArray[np.bool_] = np.any(~(np.abs(values) <= _LARGEST), axis=1)
+    skipped = np.zeros(len(values), dtype=np.bool_)
+    for column in values.T:  # one after the other, for the memory
+        skipped |= ~(np.abs(column) <= _LARGEST)
     return skipped
 
 
@@ -315,7 +317,7 @@ def put_right(
     if not np.isfinite(periods[own]):
         return
     column, other, period = both[own], both[1 - own], periods[own]
-    begins, ends = stretches(np.isfinite(values[:, both]).all(axis=1))
+    begins, ends = stretches(np.isfinite(values[:, column]) & np.isfinite(values[:, other]))
     steps = values[begins[1:]] - values[ends[:-1] - 1]
     turns = np.round((steps[:, other] - steps[:, column]) / period).astype(np.int64)
     for begin, end, total in zip(begins[1:], [*begins[2:], None], np.cumsum(turns), strict=False):
