@@ -15,7 +15,7 @@
 /* Spacing of the rows over 1/w, and largest number of samples of a row [1]: with half, the same results, with one and a
  * half times as much, 2 % larger errors.
  */
-#define SH_ROW_SPACING ((sh_real)3.0)
+#define SH_ROW_SPACING ((sh_real)2.5)
 #define SH_LONGEST_ROW 8
 /* End of the range of regression.decimation [1]. */
 #define SH_LARGEST_DECIMATION 64

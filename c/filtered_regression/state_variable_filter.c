@@ -102,16 +102,27 @@ void sh_column_filters_step(sh_column_filters *restrict filters, sh_column_filte
                       d1 = behind[1][i] - 2 * lag, d2 = behind[2][i] - 3 * lag;
         const sh_real b0 = lag + k0 * d0, b1 = 2 * lag + k0 * d1 + k1 * d0,
                       b2 = 3 * lag + k0 * d2 + k1 * d1 + k2 * d0;
-        const int rests = sh_fabs(b0) + sh_fabs(b1) + sh_fabs(b2) < SMALL;
 
         filters->input[i] = x[i];
-        behind[0][i] = rests ? 0 : b0;
-        behind[1][i] = rests ? 0 : b1;
-        behind[2][i] = rests ? 0 : b2;
+        behind[0][i] = b0;
+        behind[1][i] = b1;
+        behind[2][i] = b2;
         sum->input[i] += x[i];
         sum->behind[0][i] += b0;
         sum->behind[1][i] += b1;
         sum->behind[2][i] += b2;
+    }
+}
+
+void sh_column_filters_rest(sh_column_filters *filters, int count)
+{
+    sh_real(*behind)[SH_MAX_COLUMNS] = filters->behind;
+    int i;
+
+    for (i = 0; i < count; ++i) {
+        if (sh_fabs(behind[0][i]) + sh_fabs(behind[1][i]) + sh_fabs(behind[2][i]) < SMALL) {
+            behind[0][i] = behind[1][i] = behind[2][i] = 0;
+        }
     }
 }
 

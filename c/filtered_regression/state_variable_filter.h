@@ -41,6 +41,9 @@ void sh_column_filters_start(sh_column_filters *filters, sh_column_filters *sum,
 void sh_column_filters_step(sh_column_filters *restrict filters, sh_column_filters *restrict sum,
                             const sh_filter_design *design, const sh_real *restrict x, int count);
 
+/* Lets those rest that are as good as at rest: processors compute slowly with the numbers to which they would decay. */
+void sh_column_filters_rest(sh_column_filters *filters, int count);
+
 /* The filtered signal. */
 sh_real sh_state_variable_filter_output(const sh_state_variable_filter *filter);
 

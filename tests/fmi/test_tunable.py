@@ -16,7 +16,7 @@ from fmi_instance import OK
 from fmi_runs import ESTIMATORS, FMI2, OTHER_THAN_0, PLANTS, SIGNALS, names
 
 T = 1e-3  # s
-STEPS = 60
+STEPS = 260  # a second pass begins after 0.2 s
 CHANGE = random.Random(4).randrange(20, 40)  # the parameter is changed before this step
 SIDES = {"StiffnessEstimator": [""], "AntagonisticStiffnessEstimator": ["_1", "_2"]}
 # Start values with which a parameter has an effect; the others have one with the defaults.
@@ -34,7 +34,7 @@ CONFIGURATION: dict[str, dict[str, float]] = {
     "motor.stribeck": {"motor.tau_coulomb": 0.02, "motor.v_stribeck": 5.0},
     # By tau the stiffness is negative.
     "limit.relative_std": {"limit.relative_std": 1e12, "modality": 2},
-    "regression.drift": {  # so few columns that a pass takes less than the run
+    "regression.drift": {  # so few columns that two passes take less than the run
         "rls.n": 1,
         "rls.m": 1,
         **{f"prior.{name}": 0 for name in ("bias", "damping", "load_friction", "eccentric")},

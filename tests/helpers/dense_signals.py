@@ -54,7 +54,7 @@ def bandwidth(p: Parameters) -> float:
 def decimation(p: Parameters) -> int:
     """Samples of a row."""
     chosen = int(p.get("regression.decimation", 0))
-    return chosen or int(min(max(3.0 / (bandwidth(p) * p["samplePeriod"]), 1), 8))
+    return chosen or int(min(max(2.5 / (bandwidth(p) * p["samplePeriod"]), 1), 8))
 
 
 def direction(c: Library, theta: Array, count: float, slow: float) -> tuple[Array, Array]:

@@ -67,7 +67,8 @@ def test_motions_that_nothing_was_tuned_on(c: Library) -> None:
 def test_motor_that_turns_at_the_start(
     c: Library, period: float, velocity: float, friction: float
 ) -> None:
-    """In [rad/s]. That costs hardly more than to learn nothing for 12/w, at any sample period."""
+    """In [rad/s]. That costs hardly more than to learn nothing for 12/w after the first row, at any
+    sample period."""
     t = times(period, 1.0)
     torques = np.column_stack([0.3 * np.sin(2 * np.pi * t), 8 * np.sin(0.2 * np.pi * t), 0 * t])
     start = {"initial.theta_dot": velocity, "initial.q_dot": velocity}
@@ -76,7 +77,7 @@ def test_motor_that_turns_at_the_start(
     z = np.column_stack([run[name] for name in MEASURED])
     found = Estimator(c, {**SETTINGS, "samplePeriod": period}).run(z)
     learned = np.flatnonzero(found["a"] == 0)[-1] * period
-    assert learned == pytest.approx(12 / 350, abs=5e-3)
+    assert 12 / 350 < learned < (12 + 2.5) / 350 + period
     assert msrep(run["sigma"], found["sigma"]) <= 2 * 100 * (12 / 350)
 
 
