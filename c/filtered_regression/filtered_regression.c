@@ -169,9 +169,7 @@ static int doubt_of(const sh_regression_state *state, const sh_parameters *p,
     return doubt;
 }
 
-/* Sets the outputs that follow from the coefficients and from the stiffness in estimate, and what the next row depends
- * on.
- */
+/* Sets the outputs that follow from the coefficients, and from the stiffness in estimate. */
 static void report_coefficients(sh_regression_state *state, const sh_parameters *p,
                                 const sh_joint_point *at, sh_estimate *estimate)
 {
@@ -190,7 +188,6 @@ static void report_coefficients(sh_regression_state *state, const sh_parameters 
     estimate->eccentric_hat =
         turning > 0 ? turning / sh_fmax(sh_fabs(estimate->sigma), turning) : 0; /* at most 1 rad */
     estimate->delay_hat = sum[SH_COLUMN_DELAY];
-    state->delay = sh_limited(estimate->delay_hat, SH_LARGEST_DELAY * p->prior.delay);
     estimate->hysteresis_hat = sum[SH_COLUMN_HYSTERESIS];
 }
 
@@ -231,14 +228,15 @@ static int report(sh_regression_state *state, const sh_parameters *p, sh_joint_p
     estimate->rho = state->row.rho;
     estimate->epsilon = state->row.epsilon;
     estimate->change_age = state->history.change_age;
+    estimate->misfit = sh_sqrt(state->misfit);
     if ((news & SH_NEW_COEFFICIENTS) != 0) {
-        estimate->misfit = sh_sqrt(state->misfit);
         report_coefficients(state, p, at, estimate);
     }
     estimate->doubt = doubt_of(state, p, estimate);
     state->modality = p->modality;
     state->y = y - estimate->epsilon;
     state->sigma = point.sigma;
+    state->delay = sh_limited(estimate->delay_hat, SH_LARGEST_DELAY * p->prior.delay);
     state->stiffness_known = sh_sqrt(state->variances.second) < SH_KNOWN_STIFFNESS * point.sigma;
     return 1;
 }
@@ -284,13 +282,13 @@ static int are_acceptable(const sh_joint_point *at, sh_real y, const sh_columns 
 static int take_sample(sh_regression_state *state, const sh_parameters *p)
 {
     sh_signals *signals = &state->signals;
-    const sh_real share = 1 / (sh_real)signals->decimation;
+    const sh_real share = 1 / (sh_real)signals->decimation, rough = sh_signals_roughness(signals);
     sh_mean *mean = &state->mean;
     sh_row *row = &state->row;
 
-    sh_noise_watch(&state->history, signals, p);
+    sh_noise_watch(&state->history, signals, p, rough);
     sh_state_variable_filter_add(mean->filter, signals->filter, SH_FILTERS, share);
-    mean->rough += sh_signals_roughness(signals) * share;
+    mean->rough += rough * share;
     mean->moved += sh_fabs(signals->theta_before[0] - signals->theta_before[1]) > 0 ? share : 0;
     mean->samples += 1;
     if (mean->samples < signals->decimation) {

@@ -38,11 +38,11 @@ static sh_real friction_variance(const sh_regression_state *state, const sh_para
 }
 
 /* Mean square of the noise of theta over 0.1 s [rad2]; detail 4 */
-void sh_noise_watch(sh_history *history, const sh_signals *signals, const sh_parameters *p)
+void sh_noise_watch(sh_history *history, const sh_signals *signals, const sh_parameters *p,
+                    sh_real rough)
 {
     if (!sh_is_measured(p)) {
-        history->rough += sh_fmin(signals->design.T / SH_NOISE_TIME, 1) *
-                          (sh_signals_roughness(signals) - history->rough);
+        history->rough += sh_fmin(signals->design.T / SH_NOISE_TIME, 1) * (rough - history->rough);
     }
 }
 

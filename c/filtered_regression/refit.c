@@ -211,11 +211,12 @@ void sh_data_take(sh_regression_state *state)
     sh_refit *refit = &state->refit;
     const int unread = refit->unread;
     sh_real x[SH_MAX_ROW], w;
-    int i;
 
     (void)memcpy(x, row->x, sizeof x);
     w = sh_information_take_rows(&state->data, 0, unread, x, row->w);
     if (is_open(refit)) {
+        int i;
+
         refit->w = unread < size ? w : 0; /* 0: nothing has been read */
         for (i = 0; i < SH_MAX_ROW; ++i) {
             refit->x[i] = i < unread ? 0 : x[i];

@@ -187,8 +187,9 @@ sh_real sh_signals_roughness(const sh_signals *signals);
 
 /* ---- noise.c ----------------------------------------------------------------------------- */
 
-/* Takes the noise of theta in a sample into its means. */
-void sh_noise_watch(sh_history *history, const sh_signals *signals, const sh_parameters *p);
+/* Takes the noise of theta in a sample [rad2] into its mean. */
+void sh_noise_watch(sh_history *history, const sh_signals *signals, const sh_parameters *p,
+                    sh_real rough);
 
 /* Detail 4: variance of a row, with the noise of theta as the last samples show it. */
 sh_row_noise sh_noise_of_row(const sh_regression_state *state, const sh_parameters *p);

@@ -77,13 +77,13 @@ def test_samples_of_the_changed_spring_do_not_spoil_the_motor(
 
 
 def test_a_hypothesis_that_began_before_the_change_begins_anew(c: Library) -> None:
-    """GIVEN noise that is a little evidence just before the change (of 40 seeds three).
+    """GIVEN noise that is a little evidence just before the change (of 40 seeds six).
 
     The hypothesis has learned the old spring. It must not take the contradiction for another
     motor.
     """
     stiffness = step(2.0, AT + 0.02)
-    joint = Joint(duration=22.0, frequency=0.5, amplitude=1.6, stiffness=stiffness, seed=21)
+    joint = Joint(duration=22.0, frequency=0.5, amplitude=1.6, stiffness=stiffness, seed=37)
     joint = replace(joint, load_friction=0.03, delay=1e-3, hysteresis=0.1, noise=10**-2.2)
     found = Estimator(c, {**REGRESSION, "prior.B": 0.1}).run(joint.measurements())
     later, error = joint.t > AT, np.abs(found["sigma"] / joint.sigma - 1)
@@ -169,6 +169,6 @@ def test_a_misfit_that_begins_is_in_doubt_until_it_is_usual(c: Library) -> None:
     before = (joint.t >= 2.0) & ~begun
     assert not np.any(in_doubt[before]) and np.all(found["confident"][before])
     assert np.any(in_doubt[begun & (joint.t < 22.0)])
-    assert np.all(in_doubt[(joint.t > 24.0) & (joint.t < 30.0)])
+    assert np.mean(in_doubt[(joint.t > 22.0) & (joint.t < 30.0)]) > 0.95
     assert np.mean(in_doubt[joint.t > 55.0]) < 0.2
     assert np.all(found["change_age"] == -1)

@@ -33,7 +33,8 @@ def evaluate(estimator: Estimator, phi: float, set_point: float) -> tuple[int, A
 def test_at_the_point_of_the_last_tick_it_gives_the_outputs(
     c: Library, values: dict[str, Any]
 ) -> None:
-    estimator = after(c, values)
+    """With one sample in a row, the standard deviations are those of this tick, too."""
+    estimator = after(c, {**values, "regression.decimation": 1})
     e, before = estimator.estimate, estimator.lasting()
     result, found = evaluate(estimator, e.phi, e.setPoint)
     assert result == 0

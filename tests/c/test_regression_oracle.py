@@ -166,8 +166,11 @@ MISFITS: Mapping[str, tuple[Array | Mapping[str, Any], Mapping[str, float], int]
     ),
     "load friction and delay": ({"load_friction": 0.15, "delay": 3e-3}, {}, 0),
 }
-# The other one looks like it.
-DRIFTING = ("friction that warms up", "set-point")
+# The other three look like it.
+DRIFTING = (
+    *("friction that warms up", "load friction and delay"),
+    *("set-point", "encoder of the motor"),
+)
 
 
 @slow

@@ -182,6 +182,7 @@ def test_filters_of_the_columns_are_the_same_filter(c: Library) -> None:
         if k > 0:
             x = np.full(size, value)
             c.lib.sh_column_filters_step(columns, total, d, c.pointer(x), size)
+            c.lib.sh_column_filters_rest(columns, size)
         states = np.array([[f.input, *f.behind] for f in filters.values()])
         want += states
         for found, wanted in ((columns, states), (total, want)):

@@ -158,6 +158,17 @@ def replay(played: Sequence[Log], symmetric: bool, method: Mapping[str, Value] =
     return Fit(symmetric, estimator.eta, tau_e, sigma)
 
 
+def errors(measured: Sequence[Log], method: Mapping[str, Value]) -> list[float]:
+    """RMS error of the torque at each setting in percent of its range, after all logs, with all
+    that makes up the curve: coefficients eta, dead zones and knees."""
+    estimator, _ = play(measured, False, method)
+    torques = [estimator.evaluate(log.phi, float(log.setting))["tau_e"] for log in measured]
+    return [
+        float(100 * np.sqrt(np.mean((torque - log.torque) ** 2)) / np.ptp(log.torque))
+        for torque, log in zip(torques, measured, strict=True)
+    ]
+
+
 def coverage(measured: Sequence[Log], method: Mapping[str, Value]) -> float:
     """Share of the points every 0.01 rad at which the slope of the mean curve, within 0.02 rad, is
     within 1.96 sigma_std of the estimate, when the logs are replayed a second time [%]."""

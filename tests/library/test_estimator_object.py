@@ -215,8 +215,11 @@ except KeyboardInterrupt:
 
 
 def test_the_estimate_is_evaluated_at_any_deformation(z: Samples) -> None:
-    """At the point of the last tick it gives the outputs, and nothing is learned."""
-    estimator = sigmahat.Estimator({"method": "FilteredRegression", "rls.n": 3})
+    """At the point of the last tick it gives the outputs, and nothing is learned. With one sample
+    in a row, the standard deviations are those of this tick, too."""
+    estimator = sigmahat.Estimator(
+        {"method": "FilteredRegression", "rls.n": 3, "regression.decimation": 1}
+    )
     estimator.run(**z)
     names = ("tau_e", "tau_e_std", "sigma", "sigma_std")
     last, memory = [estimator.output(name) for name in names], estimator._joints.memory.copy()
