@@ -100,7 +100,7 @@
 /* ---- change of the spring, change.c ------------------------------------------------------ */
 
 /* Evidence above which the estimate is in doubt, and, times the root of its usual error, the spring has
- * changed [1]. Without a change, none of 1930 runs of 22 s with every misfit reached the second one.
+ * changed [1]. Without a change, one of 1930 runs of 22 s with every misfit reached the second one.
  */
 #define SH_MAY_HAVE_CHANGED ((sh_real)20)
 #define SH_HAS_CHANGED ((sh_real)100)
