@@ -363,7 +363,9 @@ int sh_estimator_tick(sh_estimator *estimator, const sh_parameters *p, const sh_
                       sh_estimate *estimate);
 
 /* Evaluates the present estimate at any deformation, (21) and (23). Nothing is learned, and the
- * estimator does not change. A tick gives the same numbers for its own phi and setPoint.
+ * estimator does not change. A tick gives the same numbers for its own phi and setPoint; with
+ * SH_METHOD_FILTERED_REGRESSION its standard deviations may be those of a deformation up to 2.5 / w
+ * before, where w is the corner frequency of its filters.
  *
  * p         parameters that pass sh_parameters_check; the fixed ones as they were at the start
  * phi       deformation [rad]
