@@ -485,12 +485,10 @@ static int tick_filtered_regression(sh_estimator *estimator, const sh_parameters
     if (complete && !use_row(state, p)) { /* 3. to 5. Weigh it, predict it, and update. */
         return refuse(state, &before);
     }
-    news = settled && state->row.w > 0
-               ? 0
-               : SH_NEW_VARIANCES; /* at each tick as long as there are no rows */
+    /* At each tick as long as there are no rows. */
+    news = settled && state->row.w > 0 ? 0 : SH_NEW_VARIANCES;
     if (!complete || state->signals.decimation == 1) {
-        news |=
-            take_steps(state, p); /* 6. Estimate, data, misfit, forgetting, choice of columns. */
+        news |= take_steps(state, p); /* 6. Estimate, data, misfit, choice of columns. */
     }
     if (!settled) {
         state->row.epsilon = state->row.rho = 0;
