@@ -399,11 +399,6 @@ static int is_beside(const sh_column *column, const sh_parameters *p, sh_real x)
            (p->rls.symmetric && sh_fabs(x + place) < SH_PLACE_OF_KNEE);
 }
 
-sh_real sh_columns_torque(const sh_columns *columns, const sh_joint_point *at, const sh_real *beta)
-{
-    return at->tau_nominal + sh_sum_of_products(at->F, beta, columns->spring);
-}
-
 sh_real sh_columns_judge_knees(const sh_columns *columns, const sh_parameters *p,
                                const sh_real *beta, sh_joint_point *at)
 {
@@ -437,6 +432,11 @@ void sh_columns_move_stops(sh_real *stop, const sh_parameters *p, sh_real change
     for (i = 0; i < SH_WIDTHS; ++i) {
         stop[i] = sh_limited(stop[i] + change, HYSTERESES[i] * p->range.phi);
     }
+}
+
+sh_real sh_columns_torque(const sh_columns *columns, const sh_joint_point *at, const sh_real *beta)
+{
+    return at->tau_nominal + sh_sum_of_products(at->F, beta, columns->spring);
 }
 
 /* ---- the row ----------------------------------------------------------------------------- */

@@ -72,41 +72,29 @@ static void count_block(sh_regression_state *state)
     }
 }
 
-/* Takes the mean row of a block [size: SH_MAX_ROW]. Returns the square of the error of its prediction over the variance
- * of this error [1].
+/* Takes the mean row of a block [size: SH_MAX_ROW], or only predicts it. Returns the square of the error of its
+ * prediction over the variance of this error [1].
  */
-static sh_real take_block(sh_information *a, const sh_real *mean, sh_real w)
+static sh_real take_block(sh_information *a, const sh_real *mean, sh_real w, int only_predicts)
 {
     sh_real x[SH_MAX_ROW], error;
 
     (void)memcpy(x, mean, sizeof x);
-    error = sh_information_take(a, x, w);
+    error = only_predicts ? sh_information_predict(a, x, w) : sh_information_take(a, x, w);
     return sh_limited(error * sh_square(x[a->size + SH_RIGHT_Y]), SH_LARGE);
 }
 
-/* The same for the hypothesis of a change, which does not take its first block: if this is evidence, the spring changes
- * in it, and if not, the hypothesis begins anew behind it.
+/* Mean row sum h w x / sum h w. The hypothesis of a change takes it first, as it may begin anew before this block. It
+ * does not take its first block: if this is evidence, the spring changes in it, and if not, the hypothesis begins anew
+ * behind it.
  */
-static sh_real take_changed_block(sh_change *change, const sh_real *mean, sh_real w)
-{
-    sh_real x[SH_MAX_ROW], error;
-
-    if (change->blocks > 0) {
-        return take_block(&change->changed, mean, w);
-    }
-    (void)memcpy(x, mean, sizeof x);
-    error = sh_information_predict(&change->changed, x, w);
-    return sh_limited(error * sh_square(x[change->changed.size + SH_RIGHT_Y]), SH_LARGE);
-}
-
-/* Mean row sum h w x / sum h w. The hypothesis of a change takes it first, as it may begin anew before this block. */
 static void end_block(sh_regression_state *state, const sh_parameters *p, int step)
 {
     sh_blocks *blocks = &state->blocks;
     const int count = state->columns.size + SH_RIGHT_SIDES;
-    const sh_real variance = variance_of(state, p), w = 1 / variance;
+    const sh_real variance = variance_of(state, p);
     sh_change *change = &state->change;
-    sh_real mean[SH_MAX_ROW] = {0}, error;
+    sh_real mean[SH_MAX_ROW] = {0}, w, error;
     int i;
 
     for (i = 0; i < count; ++i) {
@@ -114,16 +102,19 @@ static void end_block(sh_regression_state *state, const sh_parameters *p, int st
     }
     if (!(variance > 0 && sh_sum_of_products(mean, mean, count) / variance <= SH_LARGE)) {
         sh_blocks_interrupt(blocks); /* also if not a number */
-    } else if (step == 0) {
-        error = take_changed_block(change, mean, w);
+        return;
+    }
+    w = 1 / variance;
+    if (step == 0) {
+        error = take_block(&change->changed, mean, w, !(change->blocks > 0));
         change->error = sh_change_begins_anew(state, error) ? 0 : error;
     } else if (step == 1) {
-        blocks->error = take_block(&blocks->constant, mean, w);
+        blocks->error = take_block(&blocks->constant, mean, w, 0);
     } else if (step == 2) {
-        error = take_block(&blocks->drifting, mean, w);
+        error = take_block(&blocks->drifting, mean, w, 0);
         blocks->error = state->friction_drifts ? error : blocks->error;
     } else {
-        (void)take_block(&blocks->recent, mean, w);
+        (void)take_block(&blocks->recent, mean, w, 0);
         count_block(state);
         sh_change_judge(state, p, blocks->error, change->error);
         sh_blocks_interrupt(blocks);

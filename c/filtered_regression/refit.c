@@ -266,8 +266,9 @@ static int end_step(sh_regression_state *state, const sh_parameters *p, int step
         set_friction_std(state, p);
         plan_refit(state, p);
         refit->pause = 0;
-        refit->step =
-            refit->trial != 0 ? SH_REFIT_STEPS : refit->step; /* nothing else before a trial */
+        if (refit->trial != 0) { /* before a trial, nothing else changes */
+            refit->step = SH_REFIT_STEPS;
+        }
     } else if (step >= 4 && step < SH_REFIT_STEPS - 1) {
         sh_friction_drift(state, refit->time, step - 4);
     } else if (step == SH_REFIT_STEPS - 1) {

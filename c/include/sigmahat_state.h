@@ -260,9 +260,10 @@ typedef struct {
     sh_posterior posterior;
     int unread; /* rows of the data, the first ones, that have not been read */
     int step;   /* next one of what a refit does behind the rows */
-    sh_real x[SH_MAX_ROW],
-        w;     /* sample for the next step, and its weight: what the data left of the newest row, or
-                                 process noise of friction */
+    /* Sample for the next step, and its weight: what the data left of the newest row, or process
+     * noise of friction.
+     */
+    sh_real x[SH_MAX_ROW], w;
     int trial; /* group that the refit tries, in its last steps of the next one; 0: none, it changes
                   the estimate */
     int last_trial;      /* group that was tried last */
