@@ -57,32 +57,33 @@ enum { ONE, TAU_E, K_0, TAU_C };
 
 #define PRIOR(member) (int)offsetof(sh_parameters, prior.member)
 #define CURVE (SH_IS_SPRING | SH_IS_CURVE)
-#define POWER (CURVE | SH_IS_POWER)
+#define FILTERED_CURVE (CURVE | SH_IS_FILTERED)
+#define POWER (FILTERED_CURVE | SH_IS_POWER)
 #define MOTOR (SH_IS_MOTOR | SH_IS_EQUATION)
 
-/* The signal of a column is in signal_of, its entry in the row in entry_of. */
+/* The signal of a filtered column is in signal_of, the entry of another one in entry_of. */
 const sh_column_kind sh_column_kinds[SH_COLUMN_KINDS] = {
-    [SH_COLUMN_POWER] = {PRIOR(tau_e), ONE, SH_SIGNAL_LINEAR, 0, POWER | SH_IS_EQUATION},
-    [SH_COLUMN_NOMINAL] = {PRIOR(nominal), ONE, SH_SIGNAL_NONE, 0, CURVE | SH_IS_EQUATION},
-    [SH_COLUMN_BIAS] = {PRIOR(bias), TAU_E, SH_SIGNAL_LINEAR, 0, 0},
-    [SH_COLUMN_DAMPING] = {PRIOR(damping), K_0, SH_SIGNAL_STEADY, 0, 0},
-    [SH_COLUMN_SIN_Q] = {PRIOR(eccentric), K_0, SH_SIGNAL_LINEAR, 0, 0},
-    [SH_COLUMN_COS_Q] = {PRIOR(eccentric), K_0, SH_SIGNAL_LINEAR, 0, 0},
-    [SH_COLUMN_LOAD] = {PRIOR(load_friction), ONE, SH_SIGNAL_NONE, 0, SH_IS_MOTOR},
-    [SH_COLUMN_DRIVE] = {PRIOR(load_friction), ONE, SH_SIGNAL_NONE, 0, SH_IS_MOTOR},
-    [SH_COLUMN_DELAY] = {PRIOR(delay), ONE, SH_SIGNAL_NONE, 0, 0},
-    [SH_COLUMN_REVERSAL] = {PRIOR(reversal), TAU_C, SH_SIGNAL_NONE, 0, SH_IS_MOTOR},
-    [SH_COLUMN_HIGHER_POWER] = {PRIOR(power), TAU_E, SH_SIGNAL_LINEAR, 1, POWER},
-    [SH_COLUMN_SET_POWER] = {PRIOR(power), TAU_E, SH_SIGNAL_LINEAR, 2, POWER},
-    [SH_COLUMN_DEAD_ZONE] = {PRIOR(gap), TAU_E, SH_SIGNAL_LINEAR, 6, SH_IS_SPRING},
-    [SH_COLUMN_HYSTERESIS] = {PRIOR(hysteresis), TAU_E, SH_SIGNAL_LINEAR, 4, 0},
-    [SH_COLUMN_KNEE] = {PRIOR(power), TAU_E, SH_SIGNAL_LINEAR, 0, CURVE},
-    [SH_COLUMN_POSSIBLE_KNEE] = {PRIOR(power), TAU_E, SH_SIGNAL_LINEAR, 3, CURVE},
-    [SH_COLUMN_SIN_M] = {PRIOR(eccentric_motor), ONE, SH_SIGNAL_STEADY, 5, SH_IS_MOTOR},
-    [SH_COLUMN_COS_M] = {PRIOR(eccentric_motor), ONE, SH_SIGNAL_STEADY, 5, SH_IS_MOTOR},
-    [SH_COLUMN_VISCOUS] = {PRIOR(D_theta), ONE, SH_SIGNAL_NONE, 0, MOTOR},
-    [SH_COLUMN_COULOMB] = {PRIOR(tau_coulomb), ONE, SH_SIGNAL_NONE, 0, MOTOR},
-    [SH_COLUMN_INERTIA] = {PRIOR(B), ONE, SH_SIGNAL_NONE, 0, MOTOR},
+    [SH_COLUMN_POWER] = {PRIOR(tau_e), ONE, 0, POWER | SH_IS_EQUATION},
+    [SH_COLUMN_NOMINAL] = {PRIOR(nominal), ONE, 0, CURVE | SH_IS_EQUATION},
+    [SH_COLUMN_BIAS] = {PRIOR(bias), TAU_E, 0, SH_IS_FILTERED},
+    [SH_COLUMN_DAMPING] = {PRIOR(damping), K_0, 0, 0},
+    [SH_COLUMN_SIN_Q] = {PRIOR(eccentric), K_0, 0, SH_IS_FILTERED},
+    [SH_COLUMN_COS_Q] = {PRIOR(eccentric), K_0, 0, SH_IS_FILTERED},
+    [SH_COLUMN_LOAD] = {PRIOR(load_friction), ONE, 0, SH_IS_MOTOR},
+    [SH_COLUMN_DRIVE] = {PRIOR(load_friction), ONE, 0, SH_IS_MOTOR},
+    [SH_COLUMN_DELAY] = {PRIOR(delay), ONE, 0, 0},
+    [SH_COLUMN_REVERSAL] = {PRIOR(reversal), TAU_C, 0, SH_IS_MOTOR},
+    [SH_COLUMN_HIGHER_POWER] = {PRIOR(power), TAU_E, 1, POWER},
+    [SH_COLUMN_SET_POWER] = {PRIOR(power), TAU_E, 2, POWER},
+    [SH_COLUMN_DEAD_ZONE] = {PRIOR(gap), TAU_E, 6, SH_IS_SPRING | SH_IS_FILTERED},
+    [SH_COLUMN_HYSTERESIS] = {PRIOR(hysteresis), TAU_E, 4, SH_IS_FILTERED},
+    [SH_COLUMN_KNEE] = {PRIOR(power), TAU_E, 0, FILTERED_CURVE},
+    [SH_COLUMN_POSSIBLE_KNEE] = {PRIOR(power), TAU_E, 3, FILTERED_CURVE},
+    [SH_COLUMN_SIN_M] = {PRIOR(eccentric_motor), ONE, 5, SH_IS_MOTOR},
+    [SH_COLUMN_COS_M] = {PRIOR(eccentric_motor), ONE, 5, SH_IS_MOTOR},
+    [SH_COLUMN_VISCOUS] = {PRIOR(D_theta), ONE, 0, MOTOR},
+    [SH_COLUMN_COULOMB] = {PRIOR(tau_coulomb), ONE, 0, MOTOR},
+    [SH_COLUMN_INERTIA] = {PRIOR(B), ONE, 0, MOTOR},
 };
 
 /* Half width of a dead zone or an element of hysteresis, or place of a knee, over range.phi [1]; else 0. If the
@@ -174,7 +175,7 @@ static void add(column_list *list, const sh_parameters *p, int kind, int i, int 
     list->size += 1;
 }
 
-/* Those of the spring are the first ones, see change.c. */
+/* Those of the spring are the first ones, see change.c; behind them are the others that have a filter of their own. */
 static void list_columns(const sh_parameters *p, column_list *list)
 {
     const int n = p->rls.n, m = p->rls.m, linear = sh_torque_basis_linear(p->rls.symmetric);
@@ -210,22 +211,22 @@ static void list_columns(const sh_parameters *p, column_list *list)
         add(list, p, SH_COLUMN_KNEE, i, 0);
     }
     add(list, p, SH_COLUMN_BIAS, 0, 0);
+    add(list, p, SH_COLUMN_SIN_Q, 0, 0);
+    add(list, p, SH_COLUMN_COS_Q, 0, 0);
+    /*@ loop unroll SH_WIDTHS; */
+    for (i = 0; i < SH_WIDTHS; ++i) {
+        add(list, p, SH_COLUMN_HYSTERESIS, i, 0);
+    }
     add(list, p, SH_COLUMN_DAMPING, 0, 0);
     if (m > 1) {
         add(list, p, SH_COLUMN_DAMPING, 0, m - 1);
     }
-    add(list, p, SH_COLUMN_SIN_Q, 0, 0);
-    add(list, p, SH_COLUMN_COS_Q, 0, 0);
     add(list, p, SH_COLUMN_LOAD, 0, 0);
     if (p->prior.tau_coulomb > 0) { /* else the motor has no dry friction */
         add(list, p, SH_COLUMN_DRIVE, 0, 0);
     }
     add(list, p, SH_COLUMN_DELAY, 0, 0);
     add(list, p, SH_COLUMN_REVERSAL, 0, 0);
-    /*@ loop unroll SH_WIDTHS; */
-    for (i = 0; i < SH_WIDTHS; ++i) {
-        add(list, p, SH_COLUMN_HYSTERESIS, i, 0);
-    }
     add(list, p, SH_COLUMN_SIN_M, 0, 0);
     add(list, p, SH_COLUMN_COS_M, 0, 0);
     add(list, p, SH_COLUMN_VISCOUS, 0, 0);
@@ -249,12 +250,13 @@ void sh_columns_start(sh_columns *columns, const sh_parameters *p)
     list_columns(p, &list);
     columns->size = sh_columns_count(p);
     columns->has_nominal = sh_has_nominal_curve(p);
-    columns->spring = columns->knees = 0;
+    columns->spring = columns->knees = columns->filtered = 0;
     /*@ loop unroll SH_MAX_COLUMNS; */
     for (i = 0; i < columns->size; ++i) {
         const sh_column *column = &columns->column[i];
 
         columns->spring += sh_column_is(column, SH_IS_SPRING);
+        columns->filtered += sh_column_is(column, SH_IS_SPRING | SH_IS_FILTERED);
         columns->knees += sh_column_is(column, SH_IS_SPRING) && column->kind < SH_COLUMN_DEAD_ZONE;
     }
 }
@@ -294,8 +296,6 @@ static sh_real signal_of(const sh_column *column, const sh_parameters *p, const 
         return at->tau_nominal;
     case SH_COLUMN_BIAS:
         return 1;
-    case SH_COLUMN_DAMPING: /* phi l^j: as the stiffness, the damping may depend on the set-point */
-        return at->phi * sh_limited(at->l[j], SH_LARGE);
     case SH_COLUMN_SIN_Q:
         return sh_sin(at->q);
     case SH_COLUMN_COS_Q:
@@ -312,11 +312,7 @@ static sh_real signal_of(const sh_column *column, const sh_parameters *p, const 
         beyond = beyond_knee(at->x, h, p->rls.symmetric);
         *slope = sh_fabs(beyond) > 0 ? 1 / p->range.phi : 0;
         return beyond;
-    case SH_COLUMN_SIN_M:
-        return sh_sin(p->motor.gamma * at->theta);
-    case SH_COLUMN_COS_M:
-        return sh_cos(p->motor.gamma * at->theta);
-    default: /* it has no filter, or signals.c gives its signal */
+    default: /* signals.c gives its signal */
         return 0;
     }
 }
@@ -327,8 +323,8 @@ static void set_powers(sh_joint_point *point, const sh_parameters *p, sh_real se
     const int symmetric = p->rls.symmetric;
     const sh_real x = point->x;
     const sh_real l = (set_point - p->range.setPoint_center) / p->range.setPoint;
-    const sh_real step = symmetric ? x * x : x;
-    sh_real power = symmetric ? x : 1, slope = symmetric ? 1 / p->range.phi : 0;
+    const sh_real step = symmetric ? x * x : x, per_phi = 1 / p->range.phi;
+    sh_real power = symmetric ? x : 1, slope = symmetric ? per_phi : 0;
     int i, j;
 
     for (i = 0; i < SH_MAX_N; ++i) {
@@ -337,7 +333,7 @@ static void set_powers(sh_joint_point *point, const sh_parameters *p, sh_real se
         point->power[i] = e > 0 ? power / (sh_real)e : power;
         point->slope[i] = slope;
         power *= step;
-        slope = e > 0 ? slope * step : 1 / p->range.phi;
+        slope = e > 0 ? slope * step : per_phi;
     }
     point->l[0] = 1;
     for (j = 1; j < SH_MAX_M; ++j) {
@@ -367,17 +363,19 @@ void sh_joint_point_at(sh_joint_point *point, const sh_columns *columns, const s
 {
     int i;
 
-    (void)memset(point, 0, sizeof *point);
     point->theta = theta;
     point->q = q;
     point->phi = phi;
     point->x = phi / p->range.phi;
     point->stop = stop;
     set_powers(point, p, set_point);
+    point->phi_set = phi * point->l[p->rls.m - 1];
+    point->tau_nominal = point->sigma_nominal = 0;
     if (columns->has_nominal) {
         set_nominal(point, p, set_point);
     }
-    for (i = 0; i < columns->size; ++i) {
+    /*@ loop unroll SH_MAX_COLUMNS; */
+    for (i = 0; i < columns->filtered; ++i) {
         sh_real slope = 0;
 
         point->F[i] = columns->column[i].prior * signal_of(&columns->column[i], p, point, &slope);
@@ -475,18 +473,6 @@ sh_real sh_columns_y(const sh_parameters *p, const sh_filter_design *design,
            (sh_is_measured(p) ? 0 : motor_torque(p, design, &filter[SH_FILTER_THETA]));
 }
 
-/* Mean of the filter of column i. */
-static sh_state_variable_filter own_filter(const sh_regression_state *state, int i)
-{
-    const sh_column_filters *sum = &state->mean.columns;
-    const sh_real share = 1 / (sh_real)state->signals.decimation;
-    const sh_state_variable_filter own = {
-        share * sum->input[i],
-        {share * sum->behind[0][i], share * sum->behind[1][i], share * sum->behind[2][i]}};
-
-    return own;
-}
-
 /* sigma S + gamma^2 (D_theta S' + B S''): the error of y by the error S of theta; 0 while sigma is not
  * known, detail 13.
  */
@@ -499,21 +485,23 @@ static sh_real encoder_error(const sh_regression_state *state, const sh_paramete
     return state->stiffness_known ? sh_limited(error, SH_LARGEST_ENCODER_ERROR) : 0;
 }
 
-/* Entry of column i in the row. It still lacks the factor `prior`, unless the column has a filter of its own. */
-static sh_real entry_of(const sh_regression_state *state, const sh_parameters *p, int i)
+/* Entry of a column without a filter of its own. It still lacks the factor `prior`. */
+static sh_real entry_of(const sh_regression_state *state, const sh_parameters *p,
+                        const sh_column *column)
 {
     const sh_filter_design *design = &state->signals.design;
-    const sh_state_variable_filter *filter = state->mean.filter, own = own_filter(state, i);
+    const sh_state_variable_filter *filter = state->mean.filter;
     const sh_state_variable_filter *theta = &filter[SH_FILTER_THETA],
                                    *tau = &filter[SH_FILTER_TORQUE];
     const sh_state_variable_filter *sign = &filter[SH_FILTER_SIGN];
     const sh_real gamma = p->motor.gamma, gain = sh_is_measured(p) ? 1 : -gamma;
 
-    switch (state->columns.column[i].kind) {
+    switch (column->kind) {
     case SH_COLUMN_NOMINAL:
         return sh_state_variable_filter_output(&filter[SH_FILTER_NOMINAL]);
-    case SH_COLUMN_DAMPING: /* (phi l^j)' */
-        return sh_state_variable_filter_first(&own, design);
+    case SH_COLUMN_DAMPING: /* (phi l^j)': as the stiffness, the damping may depend on the set-point */
+        return sh_state_variable_filter_first(
+            &filter[column->j > 0 ? SH_FILTER_PHI_SET : SH_FILTER_PHI], design);
     case SH_COLUMN_LOAD: /* -|tau_e| s through the filter */
         return as_if_smooth(&filter[SH_FILTER_LOAD], design);
     case SH_COLUMN_DRIVE: /* -|gamma tau_f| s_f */
@@ -524,8 +512,9 @@ static sh_real entry_of(const sh_regression_state *state, const sh_parameters *p
     case SH_COLUMN_REVERSAL: /* |gamma| s'_f */
         return sh_fabs(gamma) * sh_state_variable_filter_first(sign, design);
     case SH_COLUMN_SIN_M:
+        return encoder_error(state, p, &filter[SH_FILTER_SIN_M]);
     case SH_COLUMN_COS_M:
-        return encoder_error(state, p, &own);
+        return encoder_error(state, p, &filter[SH_FILTER_COS_M]);
     case SH_COLUMN_VISCOUS: /* -gamma^2 D_theta theta'_f */
         return -gamma * gamma * p->motor.D_theta * sh_state_variable_filter_first(theta, design);
     case SH_COLUMN_COULOMB: /* -|gamma| s_f */
@@ -533,7 +522,7 @@ static sh_real entry_of(const sh_regression_state *state, const sh_parameters *p
     case SH_COLUMN_INERTIA: /* -gamma^2 B theta''_f */
         return -gamma * gamma * p->motor.B * sh_state_variable_filter_second(theta, design);
     default:
-        return sh_state_variable_filter_output(&own);
+        return 0;
     }
 }
 
@@ -541,16 +530,20 @@ void sh_columns_row(const sh_regression_state *state, const sh_parameters *p, sh
 {
     const sh_filter_design *design = &state->signals.design;
     const sh_state_variable_filter *filter = state->mean.filter;
+    const sh_real share = 1 / (sh_real)state->signals.decimation;
     const int size = state->columns.size;
     int i;
 
     for (i = 0; i < size; ++i) {
         const sh_column *column = &state->columns.column[i];
-        const int has_filter = sh_column_kinds[column->kind].signal != SH_SIGNAL_NONE;
 
-        x[i] = sh_is_measured(p) && sh_column_is(column, SH_IS_MOTOR)
-                   ? 0
-                   : (has_filter ? 1 : column->prior) * entry_of(state, p, i);
+        if (sh_column_is(column, SH_IS_FILTERED)) {
+            x[i] = share * state->mean.output[i];
+        } else if (sh_is_measured(p) && sh_column_is(column, SH_IS_MOTOR)) {
+            x[i] = 0;
+        } else {
+            x[i] = column->prior * entry_of(state, p, column);
+        }
     }
     x[size + SH_RIGHT_GAIN] = torque_in_y(p, design, filter);
     x[size + SH_RIGHT_Y] = sh_columns_y(p, design, filter);

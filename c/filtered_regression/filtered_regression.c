@@ -258,6 +258,7 @@ static void start_filtered_regression(sh_estimator *estimator, const sh_paramete
     state->row.tick = state->signals.decimation;
     sh_refit_start(state, p);
     evaluate_at_rest(state, p, 0, p->setPoint.offset, &at, &point);
+    state->variances = variances_at(state, p, &at);
     estimate->sigma_std = point.sigma_std;
     estimate->tau_e_std = point.tau_e_std;
     report_coefficients(state, p, &at, estimate);
@@ -270,9 +271,10 @@ static void start_filtered_regression(sh_estimator *estimator, const sh_paramete
 /* 1 if the signals of a sample are so small that nothing overflows; 0 also if one is not a number. */
 static int are_acceptable(const sh_joint_point *at, sh_real y, const sh_columns *columns)
 {
-    return sh_sum_of_products(at->F, at->F, columns->size) <= SH_LARGE &&
+    return sh_sum_of_products(at->F, at->F, columns->filtered) <= SH_LARGE &&
            sh_sum_of_products(at->dF, at->dF, columns->spring) <= SH_LARGE &&
            sh_fabs(at->tau_nominal) <= SH_LARGE && sh_fabs(at->sigma_nominal) <= SH_LARGE &&
+           sh_square(at->phi) <= SH_LARGE && sh_square(at->phi_set) <= SH_LARGE &&
            sh_square(y) <= SH_LARGE;
 }
 
@@ -294,7 +296,7 @@ static int take_sample(sh_regression_state *state, const sh_parameters *p)
     if (mean->samples < signals->decimation) {
         return 0;
     }
-    sh_column_filters_rest(&signals->columns, state->columns.size);
+    sh_column_filters_rest(&signals->columns, state->columns.filtered);
     sh_columns_row(state, p, row->x);
     row->rough = mean->rough;
     row->moved = mean->moved;
@@ -347,20 +349,19 @@ static void update_noise(sh_regression_state *state, const sh_parameters *p,
 }
 
 /* Takes a complete row, steps 3 to 5 of the tick. Returns 0 if its numbers are too large. */
-static int use_row(sh_regression_state *state, const sh_parameters *p)
+static int use_row(sh_regression_state *state, const sh_parameters *p, const sh_row_noise *noise)
 {
     const int size = state->columns.size;
-    const sh_row_noise noise = sh_noise_of_row(state, p);
     sh_row *row = &state->row;
     sh_column_noise left;
     sh_real share; /* 1 / (1 + rho) */
 
-    row->w = weight_of(&noise, row->x, size + SH_RIGHT_SIDES); /* 3. Weigh it. */
-    row->lasting = noise.lasting;
+    row->w = weight_of(noise, row->x, size + SH_RIGHT_SIDES); /* 3. Weigh it. */
+    row->lasting = noise->lasting;
     if (!(row->w > 0)) {
         return 0;
     }
-    row->epsilon = predict(state, &noise, row->x, &left); /* 4. Predict and compare. */
+    row->epsilon = predict(state, noise, row->x, &left); /* 4. Predict and compare. */
     share = sh_posterior_take(&state->posterior, row->x, size, row->w); /* 5. Update. */
     row->rho = share > 0 ? sh_limited((1 - share) / share, SH_LARGEST_OUTPUT) : SH_LARGEST_OUTPUT;
     update_noise(state, p, &left, row->w);
@@ -368,7 +369,9 @@ static int use_row(sh_regression_state *state, const sh_parameters *p)
     return 1;
 }
 
-/* What else a row changes: step 0 to 7, at most one triangular matrix each. Returns SH_NEW_*. */
+/* What else a row changes: step 0 to 6, at most one triangular matrix each. A block that this row fills is taken in the
+ * last three steps, and in the first one of them after the next row. Returns SH_NEW_*.
+ */
 static int take_step(sh_regression_state *state, const sh_parameters *p, int step)
 {
     int news = 0;
@@ -384,6 +387,7 @@ static int take_step(sh_regression_state *state, const sh_parameters *p, int ste
     } else if (step == 3) {
         sh_refit_take(state);
     } else if (step == 4) {
+        sh_blocks_end(state, p, 3);
         sh_blocks_take(state);
     }
     sh_blocks_end(state, p, step - 4);
@@ -478,15 +482,18 @@ static int tick_filtered_regression(sh_estimator *estimator, const sh_parameters
     state->history.settling = sh_fmax(state->history.settling - p->samplePeriod, 0);
     settled = !(state->history.settling > 0);
     complete = settled && take_sample(state, p); /* 2. Build a row of K samples. */
-    if (complete && sh_noise_contradicts_rest(state, p)) {
-        wait_until_settled(state);
-        settled = complete = 0;
-    }
-    if (complete && !use_row(state, p)) { /* 3. to 5. Weigh it, predict it, and update. */
-        return refuse(state, &before);
+    if (complete) {
+        const sh_row_noise noise = sh_noise_of_row(state, p);
+
+        if (sh_noise_contradicts_rest(state, p, &noise)) {
+            wait_until_settled(state);
+            settled = 0;
+        } else if (!use_row(state, p, &noise)) { /* 3. to 5. Weigh it, predict it, and update. */
+            return refuse(state, &before);
+        }
     }
     /* At each tick as long as there are no rows. */
-    news = settled && state->row.w > 0 ? 0 : SH_NEW_VARIANCES;
+    news = complete || (settled && state->row.w > 0) ? 0 : SH_NEW_VARIANCES;
     if (!complete || state->signals.decimation == 1) {
         news |= take_steps(state, p); /* 6. Estimate, data, misfit, choice of columns. */
     }

@@ -61,25 +61,30 @@ void sh_information_restart(sh_information *a, int count, sh_real precision)
     }
 }
 
-/* Takes what the rows before left of a sample, of the weight w and with the entry x, into an entry of D. Returns the
- * gain for the row of U, and changes w to what is left of it. If nothing changes, x becomes 0.
+/* What is left of a sample: the variance v of its error, and one over it. It waits for one addition a row alone. */
+typedef struct {
+    sh_real variance, weight;
+} sample_left;
+
+/* Takes what the rows before left of a sample, with the entry x, into an entry of D. Returns the gain for the row of U.
+ * If nothing changes, x becomes 0.
  *
- *     D_i += w x_i^2 ,   gain = w x_i / D_i ,   w *= D_i before / D_i .
+ *     D_i += x_i^2 / v ,   v += x_i^2 / D_i before ,   gain = x_i / (D_i before v) .
  */
-static sh_real take_entry(sh_real *D, sh_real *x, sh_real *w)
+static sh_real take_entry(sh_real *D, sh_real *x, sample_left *left)
 {
-    const sh_real before = *D, after = before + *w * *x * *x;
-    sh_real share, gain;
+    const sh_real before = *D, square = *x * *x, after = before + left->weight * square;
+    sh_real share;
 
     if (!(sh_fabs(*x) > 0 && after > SH_SMALLEST_D)) {
         *x = 0;
         return 0;
     }
-    share = 1 / after;
-    gain = *w * *x * share;
+    share = 1 / before;
     *D = after;
-    *w *= before * share;
-    return gain;
+    left->variance += square * share;
+    left->weight = 1 / left->variance;
+    return *x * share * left->weight;
 }
 
 /* x -= x_i U_i ,   U_i += gain x */
@@ -113,19 +118,20 @@ sh_real sh_information_predict(const sh_information *a, sh_real *x, sh_real w)
 {
     const int size = a->size;
     const sh_real *row = a->U;
+    sample_left left = {1 / w, w};
     int i, k;
 
     for (i = 0; i < size; ++i) {
         const int count = size - 1 - i + SH_RIGHT_SIDES;
         sh_real D = a->D[i];
 
-        (void)take_entry(&D, &x[i], &w);
+        (void)take_entry(&D, &x[i], &left);
         for (k = 0; k < count; ++k) {
             x[i + 1 + k] -= x[i] * row[k];
         }
         row += count;
     }
-    return w;
+    return left.weight;
 }
 
 /* Gentleman, for each row i, with the sample x and its weight w that the rows before left. */
@@ -133,18 +139,19 @@ sh_real sh_information_take_rows(sh_information *a, int first, int end, sh_real 
 {
     const int size = a->size, begin = first < size ? first : size, rows = end < size ? end : size;
     sh_real *row = a->U + row_offset(size, begin), gain[2];
+    sample_left left = {1 / w, w};
     int i;
 
     for (i = begin; i < rows; ++i) {
         const int count = size - 1 - i + SH_RIGHT_SIDES;
 
-        gain[0] = take_entry(&a->D[i], &x[i], &w);
+        gain[0] = take_entry(&a->D[i], &x[i], &left);
         if (i + 1 < rows) { /* with the next row */
             sh_real *next = row + count;
 
             x[i + 1] -= x[i] * row[0];
             row[0] += gain[0] * x[i + 1];
-            gain[1] = take_entry(&a->D[i + 1], &x[i + 1], &w);
+            gain[1] = take_entry(&a->D[i + 1], &x[i + 1], &left);
             if (sh_fabs(x[i]) > 0 || sh_fabs(x[i + 1]) > 0) {
                 combine_two(row + 1, next, x + i + 2, count - 1, x + i, gain);
             }
@@ -158,9 +165,9 @@ sh_real sh_information_take_rows(sh_information *a, int first, int end, sh_real 
     if (rows == size) {
         const sh_real error = x[size + SH_RIGHT_Y];
 
-        a->squares += sh_fmin(w * error * error, SH_LARGE);
+        a->squares += sh_fmin(left.weight * error * error, SH_LARGE);
     }
-    return w;
+    return left.weight;
 }
 
 sh_real sh_information_take(sh_information *a, sh_real *x, sh_real w)
@@ -200,9 +207,10 @@ void sh_information_solve(const sh_information *a, const sh_last_row *last, sh_r
         sh_real y, gain;
 
         row -= count + SH_RIGHT_SIDES;
-        sh_scalar_products(row, beta + i + 1, per_gain + i + 1, count, &y, &gain);
-        beta[i] = row[count + SH_RIGHT_Y] - y;
-        per_gain[i] = row[count + SH_RIGHT_GAIN] - gain;
+        sh_scalar_products(row + 1, beta + i + 2, per_gain + i + 2, count - 1, &y, &gain);
+        /* The newest entry comes last: the sums need not wait for it. */
+        beta[i] = row[count + SH_RIGHT_Y] - y - row[0] * beta[i + 1];
+        per_gain[i] = row[count + SH_RIGHT_GAIN] - gain - row[0] * per_gain[i + 1];
     }
 }
 
@@ -232,15 +240,39 @@ sh_variances sh_information_variances(const sh_information *a, sh_real last_D, s
         const sh_real v = first[i], w = second[i];
 
         if (sh_fabs(v) > 0 || sh_fabs(w) > 0) {
+            const sh_real variance = 1 / a->D[i];
+
             subtract(first + i + 1, second + i + 1, row, count, v, w);
-            found.first += v / a->D[i] * v;
-            found.second += w / a->D[i] * w;
+            found.first += v * variance * v;
+            found.second += w * variance * w;
         }
         row += count + SH_RIGHT_SIDES;
     }
     found.first += first[end] / last_D * first[end];
     found.second += second[end] / last_D * second[end];
     return found;
+}
+
+sh_real sh_information_variance(const sh_information *a, sh_real last_D, sh_real *c)
+{
+    const int end = a->size - 1;
+    const sh_real *row = a->U;
+    sh_real found = 0;
+    int i, k;
+
+    for (i = 0; i < end; ++i) {
+        const int count = end - i;
+        const sh_real v = c[i];
+
+        if (sh_fabs(v) > 0) {
+            for (k = 0; k < count; ++k) {
+                c[i + 1 + k] -= v * row[k];
+            }
+            found += v / a->D[i] * v;
+        }
+        row += count + SH_RIGHT_SIDES;
+    }
+    return found + c[end] / last_D * c[end];
 }
 
 sh_real sh_information_squares(const sh_information *a, const sh_real *beta)
@@ -280,14 +312,18 @@ sh_real sh_information_drift_sample(const sh_information *a, const sh_real *v, s
     const int size = a->size;
     const sh_real *of_U = a->U;
     sh_real vAv = 0;
-    int i, j;
+    int zeros = 0, i, j; /* of v, behind entry i */
 
     for (i = 0; i < size + SH_RIGHT_SIDES; ++i) {
         row[i] = 0;
     }
+    while (zeros < size - 1 && !(sh_fabs(v[zeros + 1]) > 0)) {
+        zeros += 1;
+    }
     for (i = 0; i < size; ++i) { /* row = v' U' D [U, U z] */
         const int count = size - 1 - i;
-        const sh_real along = v[i] + sh_sum_of_products(of_U, v + i + 1, count);
+        const sh_real along =
+            v[i] + sh_sum_of_products(of_U + zeros, v + i + 1 + zeros, count - zeros);
         const sh_real scaled = a->D[i] * along;
 
         row[i] += scaled;
@@ -296,6 +332,7 @@ sh_real sh_information_drift_sample(const sh_information *a, const sh_real *v, s
         }
         vAv += scaled * along;
         of_U += count + SH_RIGHT_SIDES;
+        zeros -= zeros > 0 ? 1 : 0;
     }
     if (!(vAv > 0) || !isfinite(vAv)) { /* nothing is known along v; or an overflow */
         return 0;

@@ -78,6 +78,9 @@ void sh_information_solve(const sh_information *a, const sh_last_row *last, sh_r
 sh_variances sh_information_variances(const sh_information *a, sh_real last_D, sh_real *first,
                                       sh_real *second);
 
+/* Variance of one of them. */
+sh_real sh_information_variance(const sh_information *a, sh_real last_D, sh_real *c);
+
 /* a' b [size: count], in four sums that do not wait for each other. */
 sh_real sh_sum_of_products(const sh_real *a, const sh_real *b, int count);
 

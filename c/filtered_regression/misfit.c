@@ -165,20 +165,18 @@ static sh_real squares_of(const sh_information *blocks, const sh_real *beta, sh_
            prior * sh_sum_of_products(beta, beta, blocks->size);
 }
 
-/* Reduced chi-square of the recent blocks, if it is beyond chance; else 0, and while friction or the
- * curve drifts, which these blocks do not contain.
- */
-static sh_real recent_misfit(const sh_regression_state *state, const sh_parameters *p)
+/* 0 also while friction or the curve drifts, which these blocks do not contain. */
+void sh_misfit_judge_recent(sh_regression_state *state, const sh_parameters *p)
 {
-    const sh_blocks *blocks = &state->blocks;
+    sh_blocks *blocks = &state->blocks;
     const sh_real N = blocks->recent_count;
-    sh_real squares;
 
-    if (N < SH_FIRST_BLOCKS || state->friction_drifts || p->regression.drift > 0) {
-        return 0;
+    blocks->recent_misfit = 0;
+    if (N >= SH_FIRST_BLOCKS && !state->friction_drifts && !(p->regression.drift > 0)) {
+        const sh_real squares = squares_of(&blocks->recent, state->beta, 1);
+
+        blocks->recent_misfit = squares > chance(N) ? squares / N : 0;
     }
-    squares = squares_of(&blocks->recent, state->beta, 1);
-    return squares > chance(N) ? squares / N : 0;
 }
 
 /* Whether there are enough blocks to tell a misfit from chance. */
@@ -209,7 +207,7 @@ void sh_misfit_judge(sh_regression_state *state, const sh_parameters *p)
                    blocks->prior) /
         (N - parameters / 2);
     t = chance(N) / N;
-    state->misfit = sh_fmax(1, sh_fmax(q, recent_misfit(state, p)));
+    state->misfit = sh_fmax(1, sh_fmax(q, blocks->recent_misfit));
     state->variance_factor = 1;
     if (!(p->regression.memory > 0)) { /* switched off */
         return;

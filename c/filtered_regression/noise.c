@@ -76,22 +76,22 @@ sh_row_noise sh_noise_of_row(const sh_regression_state *state, const sh_paramete
     const sh_filter_design *design = &state->signals.design;
     const sh_real rounding = sh_square(state->sigma) * counts_squared(&state->signals) / 12;
     sh_real R = rounding + sh_square(p->noise.tau_e), stays = rounding * history->resting;
-    sh_row_noise noise = {0, 0, 0, 0};
+    sh_row_noise noise = {0, 0, 0, 0, 0};
 
     if (!sh_is_measured(p)) {
-        const sh_real friction = friction_variance(state, p),
-                      theta = sh_fmax(history->rough, sh_square(state->signals.count) / 12);
+        const sh_real theta = sh_fmax(history->rough, sh_square(state->signals.count) / 12);
         sh_real whole;
 
+        noise.friction = friction_variance(state, p);
         R = (rounding + sh_square(p->motor.gamma * p->noise.tau)) *
                 (1 + SH_EXCESS * (excess_of_noise(state, p) - 1)) +
-            friction / ((sh_real)(3.0 / 16) * design->w * design->T);
-        stays += friction * history->unsure;
+            noise.friction / ((sh_real)(3.0 / 16) * design->w * design->T);
+        stays += noise.friction * history->unsure;
         noise.torque = torque_noise(&state->signals, p);
         /* lambda = N_tau / (N_tau + N_theta + variance of the friction whose sign is unknown), detail 14; N_theta has
          * at least the noise of rounding.
          */
-        whole = noise.torque + inertial_noise(&state->signals, p) * theta + friction;
+        whole = noise.torque + inertial_noise(&state->signals, p) * theta + noise.friction;
         noise.share = whole > 0 ? noise.torque / whole : 0;
     }
     noise.lasting = sh_square(1 + stays / R);
@@ -119,7 +119,8 @@ sh_real sh_noise_of_inertia(const sh_regression_state *state, const sh_parameter
 /* epsilon^2 > 25 (x' P x + N_tau + (gamma^2 B)^2 G count^2/12 + gamma^2 (tau_C^2 + P_CC) u_f^2), where x contains
  * only the columns of the equation: a bias, or another thing that a joint may have, would hide a slow motion.
  */
-int sh_noise_contradicts_rest(sh_regression_state *state, const sh_parameters *p)
+int sh_noise_contradicts_rest(sh_regression_state *state, const sh_parameters *p,
+                              const sh_row_noise *noise)
 {
     const int size = state->columns.size;
     const sh_real *x = state->row.x;
@@ -134,9 +135,8 @@ int sh_noise_contradicts_rest(sh_regression_state *state, const sh_parameters *p
     for (i = 0; i < size; ++i) {
         c[i] = sh_column_is(&state->columns.column[i], SH_IS_EQUATION) ? x[i] : 0;
     }
-    variance = sh_posterior_variance(&state->posterior, p->prior.B, c, size) +
-               torque_noise(&state->signals, p) +
+    variance = sh_posterior_variance(&state->posterior, p->prior.B, c, size) + noise->torque +
                inertial_noise(&state->signals, p) * sh_square(state->signals.count) / 12 +
-               friction_variance(state, p);
+               noise->friction;
     return sh_square(epsilon) > sh_square(SH_AT_REST) * variance;
 }

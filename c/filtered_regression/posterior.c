@@ -70,12 +70,12 @@ void sh_posterior_remove_noise(sh_posterior *posterior, sh_real prior_B, int i,
     const sh_last_row last = weighed_last(posterior, prior_B);
     const sh_real all = noise->information * posterior->weight;
     const sh_information *a = &posterior->information;
-    sh_real unit[SH_MAX_COLUMNS] = {0}, none[SH_MAX_COLUMNS] = {0}, row[SH_MAX_ROW] = {0};
+    sh_real unit[SH_MAX_COLUMNS] = {0}, row[SH_MAX_ROW] = {0};
     sh_real beta[SH_MAX_COLUMNS] = {0}, per_gain[SH_MAX_COLUMNS] = {0};
     sh_real G = noise->gain * posterior->weight, D, N, I, Q, lost, less;
 
     unit[i] = row[i] = 1;
-    D = 1 / sh_information_variances(a, last.D, unit, none).first;
+    D = 1 / sh_information_variance(a, last.D, unit);
     if (!(all > 0) || !(D > 1) || !(D <= SH_LARGE)) {
         return;
     }
@@ -132,5 +132,14 @@ sh_variances sh_posterior_variances(const sh_posterior *posterior, sh_real prior
 sh_real sh_posterior_variance(const sh_posterior *posterior, sh_real prior_B, const sh_real *c,
                               int count)
 {
-    return sh_posterior_variances(posterior, prior_B, c, c, count).first;
+    const sh_real last_D = weighed_last(posterior, prior_B).D;
+    sh_real own[SH_MAX_COLUMNS] = {0};
+    int i;
+
+    for (i = 0; i < posterior->information.size; ++i) {
+        const int of_data = posterior->column[i];
+
+        own[i] = of_data < count ? c[of_data] : 0;
+    }
+    return sh_information_variance(&posterior->information, last_D, own);
 }

@@ -1,6 +1,6 @@
 /* Refits: how the misfit, and the choice of columns, act on past samples in bounded time (detail 6). A row of
  * the data with its weight is a sample for another triangle: so a new posterior is computed beside the present
- * one, from two rows of the data in each tick, beginning with the last. A new row passes the rows of the data from the
+ * one, from a row of the data in each tick, beginning with the last ones, of which it takes two. A new row passes the rows of the data from the
  * first to the last: what those that have not been read leave of it is for the new posterior, too. Every second refit
  * is a trial of a group of columns, and its estimate is not used.
  */
@@ -151,15 +151,6 @@ static void remove_noise(sh_regression_state *state, const sh_parameters *p)
     }
 }
 
-/* The estimate is the one of the refit now. Returns SH_NEW_*. */
-static int use_refit(sh_regression_state *state, const sh_parameters *p)
-{
-    state->posterior = state->refit.posterior;
-    sh_posterior_estimate(&state->posterior, p->prior.B, state->beta, state->per_gain,
-                          state->columns.size);
-    return SH_NEW_COEFFICIENTS;
-}
-
 /* Std deviation of the relative error of viscous friction. */
 static void set_friction_std(sh_regression_state *state, const sh_parameters *p)
 {
@@ -243,7 +234,7 @@ static sh_real pause_of(const sh_blocks *blocks)
                                            : SH_REFIT_PAUSE * blocks->count * SH_BLOCK;
 }
 
-/* What a refit does behind its rows: step 0..12. Friction drifts, and data are forgotten, before a refit that is no
+/* What a refit does behind its rows: step 0..15. Friction drifts, and data are forgotten, before a refit that is no
  * trial. Returns SH_NEW_*.
  */
 static int end_step(sh_regression_state *state, const sh_parameters *p, int step)
@@ -257,20 +248,27 @@ static int end_step(sh_regression_state *state, const sh_parameters *p, int step
     } else if (step == 0) {
         remove_noise(state, p);
     } else if (step == 1 && !is_trial) {
-        news = use_refit(state, p);
+        state->posterior = refit->posterior;
     } else if (step == 2 && !is_trial) {
+        sh_posterior_estimate(&state->posterior, p->prior.B, state->beta, state->per_gain,
+                              state->columns.size);
+        news = SH_NEW_COEFFICIENTS;
+    } else if (step == 3 && !is_trial) {
         state->change.following = 0;
         news = SH_NEW_VARIANCES;
-    } else if (step == 3) {
+    } else if (step == 4) {
+        sh_misfit_judge_recent(state, p);
+    } else if (step == 5) {
         sh_misfit_judge(state, p);
+    } else if (step == 6) {
         set_friction_std(state, p);
         plan_refit(state, p);
         refit->pause = 0;
         if (refit->trial != 0) { /* before a trial, nothing else changes */
             refit->step = SH_REFIT_STEPS;
         }
-    } else if (step >= 4 && step < SH_REFIT_STEPS - 1) {
-        sh_friction_drift(state, refit->time, step - 4);
+    } else if (step >= 7 && step < SH_REFIT_STEPS - 1) {
+        sh_friction_drift(state, refit->time, step - 7);
     } else if (step == SH_REFIT_STEPS - 1) {
         sh_forget(state, p, refit->time);
         refit->time = 0;
@@ -286,7 +284,7 @@ int sh_refit_advance(sh_regression_state *state, const sh_parameters *p)
 
     if (refit->unread > 0) {
         take_row(state);
-        if (refit->unread > 0) {
+        if (refit->unread > state->data.size / 2) { /* the last rows are short */
             take_row(state);
         }
     } else if (refit->step < SH_REFIT_STEPS) {

@@ -7,8 +7,8 @@
 #include "information.h"
 
 enum {
-    SH_ROW_STEPS = 8,   /* in which a row changes the estimate, and what is behind it */
-    SH_REFIT_STEPS = 13 /* of a refit behind its rows, before it pauses */
+    SH_ROW_STEPS = 7,   /* in which a row changes the estimate, and what is behind it */
+    SH_REFIT_STEPS = 16 /* of a refit behind its rows, before it pauses */
 };
 
 /* What a step changes, which may be added up. */
@@ -24,19 +24,21 @@ typedef struct {
     sh_real power[SH_MAX_N];    /* x^e / e, e of number i [1] */
     sh_real slope[SH_MAX_N];    /* and its derivative by phi [1/rad] */
     sh_real l[SH_MAX_M];        /* ((set-point - its center) / range.setPoint)^j [1] */
+    sh_real phi_set;            /* phi l^j with the highest j [rad] */
     sh_real tau_nominal;        /* torque of the curve rls.eta_0 [N.m] */
     sh_real sigma_nominal;      /* and its stiffness [N.m/rad] */
     const sh_real *stop;        /* [size: SH_WIDTHS] stop operators of hysteresis [rad] */
-    sh_real F[SH_MAX_COLUMNS];  /* signals */
+    sh_real F[SH_MAX_COLUMNS];  /* signals of the first columns, as far as they have one */
     sh_real dF[SH_MAX_COLUMNS]; /* and their slopes over phi, of the curve of the spring alone */
 } sh_joint_point;
 
 /* Variance of a row, whose inverse is its weight. */
 typedef struct {
-    sh_real R;       /* [(N.m)2] */
-    sh_real lasting; /* factor in R by errors that last, >= 1 */
-    sh_real torque;  /* variance of the filtered y by noise of the torque [(N.m)2] */
-    sh_real share;   /* lambda of detail 14: over the whole variance of the filtered y, 0..1 */
+    sh_real R;        /* [(N.m)2] */
+    sh_real lasting;  /* factor in R by errors that last, >= 1 */
+    sh_real torque;   /* variance of the filtered y by noise of the torque [(N.m)2] */
+    sh_real friction; /* and by friction whose sign is unknown [(N.m)2] */
+    sh_real share; /* lambda of detail 14: torque over the whole variance of the filtered y, 0..1 */
 } sh_row_noise;
 
 /* ---- columns.c --------------------------------------------------------------------------- */
@@ -72,20 +74,13 @@ enum {
     SH_IS_CURVE = 2,    /* a part of its curve, which may drift */
     SH_IS_POWER = 4,    /* a power of the deformation: its coefficient is an eta */
     SH_IS_EQUATION = 8, /* a term of the equation of motion, not an additional effect */
-    SH_IS_MOTOR = 16    /* 0 where the torque of the spring is measured or modelled */
-};
-
-/* How the filter of a column takes its signal. */
-enum {
-    SH_SIGNAL_NONE,   /* it has no filter of its own */
-    SH_SIGNAL_LINEAR, /* linear between samples; it begins with a jump from 0, as the torque */
-    SH_SIGNAL_STEADY  /* linear between samples; it begins as if it had been so before */
+    SH_IS_MOTOR = 16,   /* 0 where the torque of the spring is measured or modelled */
+    SH_IS_FILTERED = 32 /* its entry is the output of a filter of its own */
 };
 
 typedef struct {
     int prior;   /* offset of its std deviation in sh_parameters */
     int unit;    /* in which that is given, see columns.c */
-    int signal;  /* SH_SIGNAL_* */
     int group;   /* 0: always used */
     unsigned is; /* SH_IS_*, added up */
 } sh_column_kind;
@@ -201,7 +196,8 @@ sh_real sh_noise_of_deformation(const sh_signals *signals);
 sh_real sh_noise_of_inertia(const sh_regression_state *state, const sh_parameters *p);
 
 /* Whether the newest row shows that the motor was not at rest at the start (detail 12). */
-int sh_noise_contradicts_rest(sh_regression_state *state, const sh_parameters *p);
+int sh_noise_contradicts_rest(sh_regression_state *state, const sh_parameters *p,
+                              const sh_row_noise *noise);
 
 /* ---- posterior.c: prior and data, which are weighted by the misfit ------------------------ */
 
@@ -246,7 +242,8 @@ void sh_blocks_end(sh_regression_state *state, const sh_parameters *p, int step)
 /* Leaves out the samples of the present block: they are not in sequence with the next one. */
 void sh_blocks_interrupt(sh_blocks *blocks);
 
-/* Detail 8: sets misfit and variance_factor by the estimate beta. */
+/* Detail 8: judges the recent blocks by the estimate beta; then sets misfit and variance_factor by all blocks. */
+void sh_misfit_judge_recent(sh_regression_state *state, const sh_parameters *p);
 void sh_misfit_judge(sh_regression_state *state, const sh_parameters *p);
 
 /* Step 0..7 of detail 10, of which every second one takes the sample of the one before: lets friction drift for
@@ -294,7 +291,7 @@ void sh_data_take(sh_regression_state *state);
 /* Takes what the newest row left for the refit, if one is running. Nothing may be read in between. */
 void sh_refit_take(sh_regression_state *state);
 
-/* Takes two rows of the data of all samples, or does the next step at the end of a refit. Returns SH_NEW_*. */
+/* Takes a row of the data of all samples, two where they are short, or does the next step at the end of a refit. Returns SH_NEW_*. */
 int sh_refit_advance(sh_regression_state *state, const sh_parameters *p);
 
 #endif

@@ -20,7 +20,7 @@ sh_real sh_regression_bandwidth(const sh_parameters *p)
         (sh_real)1e-4 / p->samplePeriod);
 }
 
-/* K = 1.8 / (w T), 1..8: rows of more samples would lose what the filter leaves. */
+/* K = 2.5 / (w T), 1..8: rows of more samples would lose what the filter leaves. */
 int sh_regression_decimation(const sh_parameters *p)
 {
     const sh_real wT = sh_regression_bandwidth(p) * p->samplePeriod;
@@ -73,23 +73,26 @@ static void take_deformation(sh_history *history, const sh_signals *signals, con
 /* The first sample. The motor is assumed to be at rest, at any torque: theta starts at its value, and
  * the signals of the equation start from zero, because the equation holds from now on (detail 12).
  */
-static void begin_filters(sh_regression_state *state, const sh_joint_point *at, sh_real torque)
+static void begin_filters(sh_regression_state *state, const sh_parameters *p,
+                          const sh_joint_point *at, sh_real torque)
 {
     sh_signals *signals = &state->signals;
     sh_state_variable_filter *filter = signals->filter;
+    const sh_real turned = p->motor.gamma * at->theta;
     int i;
 
     sh_state_variable_filter_start(&filter[SH_FILTER_THETA], at->theta, at->theta);
+    sh_state_variable_filter_start(&filter[SH_FILTER_PHI], at->phi, at->phi);
+    sh_state_variable_filter_start(&filter[SH_FILTER_PHI_SET], at->phi_set, at->phi_set);
+    sh_state_variable_filter_start(&filter[SH_FILTER_SIN_M], sh_sin(turned), sh_sin(turned));
+    sh_state_variable_filter_start(&filter[SH_FILTER_COS_M], sh_cos(turned), sh_cos(turned));
     sh_state_variable_filter_start(&filter[SH_FILTER_TORQUE], torque, 0);
     sh_state_variable_filter_start(&filter[SH_FILTER_NOMINAL], at->tau_nominal, 0);
     sh_state_variable_filter_start(&filter[SH_FILTER_SIGN], 0, 0);
     sh_state_variable_filter_start(&filter[SH_FILTER_UNKNOWN], 0, 0);
     sh_state_variable_filter_start(&filter[SH_FILTER_LOAD], 0, 0);
-    for (i = 0; i < state->columns.size; ++i) {
-        const int signal = sh_column_kinds[state->columns.column[i].kind].signal;
-
-        sh_column_filters_start(&signals->columns, &state->mean.columns, i, at->F[i],
-                                signal == SH_SIGNAL_LINEAR ? 0 : at->F[i]);
+    for (i = 0; i < state->columns.filtered; ++i) {
+        sh_column_filters_start(&signals->columns, state->mean.output, i, at->F[i], 0);
     }
     sh_motion_sign_start(&signals->motion, at->theta);
     for (i = 0; i < 5; ++i) {
@@ -121,6 +124,24 @@ static void advance_measured(sh_signals *signals, const sh_parameters *p, sh_rea
     sh_state_variable_filter_step_mean(&filter[SH_FILTER_UNKNOWN], design, signals->motion.unknown);
 }
 
+/* Signals that begin as if they had been so before: those of the damping, and of the motor's encoder. */
+static void advance_steady(sh_signals *signals, const sh_parameters *p, const sh_joint_point *at)
+{
+    const sh_filter_design *design = &signals->design;
+    sh_state_variable_filter *filter = signals->filter;
+
+    if (p->prior.damping > 0) {
+        sh_state_variable_filter_step(&filter[SH_FILTER_PHI], design, at->phi);
+        sh_state_variable_filter_step(&filter[SH_FILTER_PHI_SET], design, at->phi_set);
+    }
+    if (p->prior.eccentric_motor > 0) {
+        const sh_real turned = p->motor.gamma * at->theta;
+
+        sh_state_variable_filter_step(&filter[SH_FILTER_SIN_M], design, sh_sin(turned));
+        sh_state_variable_filter_step(&filter[SH_FILTER_COS_M], design, sh_cos(turned));
+    }
+}
+
 /* The friction by load acts against the motion. Before the stiffness is known, the load is taken from
  * the motor data: it is the last fitted y (detail 13).
  */
@@ -150,10 +171,11 @@ void sh_signals_take(sh_regression_state *state, const sh_parameters *p, const s
         }
         state->history.unsure = signals->motion.unknown > 0 ? state->history.unsure + 1 : 0;
         advance_load(state, at);
-        sh_column_filters_step(&signals->columns, &state->mean.columns, &signals->design, at->F,
-                               state->columns.size);
+        advance_steady(signals, p, at);
+        sh_column_filters_step(&signals->columns, state->mean.output, &signals->design, at->F,
+                               state->columns.filtered);
     } else {
-        begin_filters(state, at, torque);
+        begin_filters(state, p, at, torque);
     }
     signals->torque_before = torque;
 }

@@ -9,15 +9,17 @@ static const sh_real SMALL = (sh_real)1e-30;
 
 sh_filter_design sh_state_variable_filter_design(sh_real w, sh_real T)
 {
-    const sh_real wT = w * T, decay = sh_exp(-wT);
+    const sh_real wT = w * T, decay = sh_exp(-wT), decayed = 1 - decay;
     sh_filter_design design;
 
     design.w = w;
     design.T = T;
-    design.lag = 1 / wT;
     design.keep[0] = decay;
     design.keep[1] = decay * wT;
     design.keep[2] = decay * wT * wT / 2;
+    design.rise[0] = decayed / wT;
+    design.rise[1] = (2 * decayed - design.keep[1]) / wT;
+    design.rise[2] = (3 * decayed - 2 * design.keep[1] - design.keep[2]) / wT;
     return design;
 }
 
@@ -27,18 +29,18 @@ void sh_state_variable_filter_start(sh_state_variable_filter *filter, sh_real x,
     filter->behind[0] = filter->behind[1] = filter->behind[2] = x - before;
 }
 
-/* Advances by T. In the steady state of a ramp, the output of stage i is i + 1 times lag behind the
- * input. Deviations from that decay as in the filter without input.
+/* Advances by T, in which the signal rises by so much. In the steady state of a ramp, the output of stage i is i + 1 times
+ * 1 / (w T) samples behind the input. Deviations from that decay as in the filter without input.
  */
-static void advance(sh_state_variable_filter *filter, const sh_filter_design *design, sh_real lag)
+static void advance(sh_state_variable_filter *filter, const sh_filter_design *design, sh_real rise)
 {
     const sh_real *keep = design->keep;
     sh_real *behind = filter->behind;
-    const sh_real d0 = behind[0] - lag, d1 = behind[1] - 2 * lag, d2 = behind[2] - 3 * lag;
 
-    behind[0] = lag + keep[0] * d0;
-    behind[1] = 2 * lag + keep[0] * d1 + keep[1] * d0;
-    behind[2] = 3 * lag + keep[0] * d2 + keep[1] * d1 + keep[2] * d0;
+    behind[2] =
+        keep[0] * behind[2] + keep[1] * behind[1] + keep[2] * behind[0] + design->rise[2] * rise;
+    behind[1] = keep[0] * behind[1] + keep[1] * behind[0] + design->rise[1] * rise;
+    behind[0] = keep[0] * behind[0] + design->rise[0] * rise;
     if (sh_fabs(behind[2]) < SMALL && sh_fabs(behind[1]) < SMALL && sh_fabs(behind[0]) < SMALL) {
         behind[0] = behind[1] = behind[2] = 0;
     }
@@ -47,7 +49,7 @@ static void advance(sh_state_variable_filter *filter, const sh_filter_design *de
 void sh_state_variable_filter_step(sh_state_variable_filter *filter, const sh_filter_design *design,
                                    sh_real x)
 {
-    advance(filter, design, (x - filter->input) * design->lag);
+    advance(filter, design, x - filter->input);
     filter->input = x;
 }
 
@@ -77,40 +79,36 @@ void sh_state_variable_filter_add(sh_state_variable_filter *restrict sum,
     }
 }
 
-void sh_column_filters_start(sh_column_filters *filters, sh_column_filters *sum, int i, sh_real x,
+void sh_column_filters_start(sh_column_filters *filters, sh_real *sum, int i, sh_real x,
                              sh_real before)
 {
     int k;
 
     filters->input[i] = x;
-    sum->input[i] += x;
     for (k = 0; k < 3; ++k) {
         filters->behind[k][i] = x - before;
-        sum->behind[k][i] += x - before;
     }
+    sum[i] += before;
 }
 
-void sh_column_filters_step(sh_column_filters *restrict filters, sh_column_filters *restrict sum,
+void sh_column_filters_step(sh_column_filters *restrict filters, sh_real *restrict sum,
                             const sh_filter_design *design, const sh_real *restrict x, int count)
 {
-    const sh_real k0 = design->keep[0], k1 = design->keep[1], k2 = design->keep[2];
+    const sh_real *keep = design->keep, *rise = design->rise;
+    const sh_real k0 = keep[0], k1 = keep[1], k2 = keep[2];
+    const sh_real r0 = rise[0], r1 = rise[1], r2 = rise[2];
     sh_real(*behind)[SH_MAX_COLUMNS] = filters->behind;
     int i;
 
     for (i = 0; i < count; ++i) { /* as in `advance` */
-        const sh_real lag = (x[i] - filters->input[i]) * design->lag, d0 = behind[0][i] - lag,
-                      d1 = behind[1][i] - 2 * lag, d2 = behind[2][i] - 3 * lag;
-        const sh_real b0 = lag + k0 * d0, b1 = 2 * lag + k0 * d1 + k1 * d0,
-                      b2 = 3 * lag + k0 * d2 + k1 * d1 + k2 * d0;
+        const sh_real u = x[i] - filters->input[i], d0 = behind[0][i], d1 = behind[1][i];
+        const sh_real d2 = k0 * behind[2][i] + k1 * d1 + k2 * d0 + r2 * u;
 
         filters->input[i] = x[i];
-        behind[0][i] = b0;
-        behind[1][i] = b1;
-        behind[2][i] = b2;
-        sum->input[i] += x[i];
-        sum->behind[0][i] += b0;
-        sum->behind[1][i] += b1;
-        sum->behind[2][i] += b2;
+        behind[0][i] = k0 * d0 + r0 * u;
+        behind[1][i] = k0 * d1 + k1 * d0 + r1 * u;
+        behind[2][i] = d2;
+        sum[i] += x[i] - d2;
     }
 }
 

@@ -33,12 +33,12 @@ void sh_state_variable_filter_add(sh_state_variable_filter *restrict sum,
                                   const sh_state_variable_filter *restrict filter, int count,
                                   sh_real share);
 
-/* The same for the filters of the columns, whose states are added to a sum: starts the one of column i, and advances
- * them to x [size: count], linearly.
+/* The same for the filters of the columns: starts the one of column i, and advances all to x [size: count], linearly.
+ * Their outputs are added to a sum [size: count].
  */
-void sh_column_filters_start(sh_column_filters *filters, sh_column_filters *sum, int i, sh_real x,
+void sh_column_filters_start(sh_column_filters *filters, sh_real *sum, int i, sh_real x,
                              sh_real before);
-void sh_column_filters_step(sh_column_filters *restrict filters, sh_column_filters *restrict sum,
+void sh_column_filters_step(sh_column_filters *restrict filters, sh_real *restrict sum,
                             const sh_filter_design *design, const sh_real *restrict x, int count);
 
 /* Lets those rest that are as good as at rest: processors compute slowly with the numbers to which they would decay. */

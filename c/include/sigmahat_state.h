@@ -73,9 +73,9 @@ typedef struct {
 typedef struct {
     sh_real w;       /* corner frequency [rad/s] */
     sh_real T;       /* sample period [s] */
-    sh_real lag;     /* 1 / (w T): delay of one stage behind a ramp [samples] */
     sh_real keep[3]; /* share that is left after T of the deviation of a stage itself, and of the
                         stages one and two before it */
+    sh_real rise[3]; /* deviation of each stage after T behind a signal that rises by 1 */
 } sh_filter_design;
 
 /* Filter of one signal, in the unit of the signal. */
@@ -132,9 +132,10 @@ typedef struct {
 
 /* All columns. */
 typedef struct {
-    int size;        /* number of columns */
-    int spring;      /* the first ones, so many, make up the torque of the spring */
-    int knees;       /* from this one on, they may have a slope that changes at once */
+    int size;     /* number of columns */
+    int spring;   /* the first ones, so many, make up the torque of the spring */
+    int knees;    /* from this one on, they may have a slope that changes at once */
+    int filtered; /* the first ones, so many, have a signal: the torque of the spring, or a filter */
     int has_nominal; /* 1: a curve rls.eta_0 is given */
     sh_column column[SH_MAX_COLUMNS];
 } sh_columns;
@@ -147,10 +148,14 @@ enum {
     SH_FILTER_UNKNOWN, /* share of the sample in which the sign is unknown */
     SH_FILTER_NOMINAL, /* torque of the curve rls.eta_0 */
     SH_FILTER_LOAD,    /* -|tau_e| s, friction that grows with the load */
+    SH_FILTER_PHI,     /* deformation */
+    SH_FILTER_PHI_SET, /* deformation times the highest power of the set-point */
+    SH_FILTER_SIN_M,   /* sine and cosine of the angle of the motor's encoder */
+    SH_FILTER_COS_M,
     SH_FILTERS
 };
 
-/* Filters of all columns, as sh_state_variable_filter. Each number stands side by side for all of them, so that
+/* Filters of the columns whose entry is their output, as sh_state_variable_filter. Each number stands side by side for all of them, so that
  * compilers compute with several columns at once.
  */
 typedef struct {
@@ -190,7 +195,7 @@ typedef struct {
     sh_real rough;                               /* of the noise of theta [rad2] */
     sh_real moved;                               /* of the samples with which theta changed [1] */
     sh_state_variable_filter filter[SH_FILTERS]; /* of the states of the filters */
-    sh_column_filters columns;                   /* K times as much */
+    sh_real output[SH_MAX_COLUMNS]; /* of the filters of the columns, K times as much */
 } sh_mean;
 
 /* The last row. The steps that take it are spread over the ticks until the next one. */
@@ -227,6 +232,7 @@ typedef struct {
     sh_information constant;     /* of the prior and blocks, parameters constant */
     sh_information drifting;     /* the same, friction may drift */
     sh_information recent;       /* of the prior and the last blocks */
+    sh_real recent_misfit;       /* their reduced chi-square, if it is beyond chance; else 0 */
     sh_real prior;               /* share of the prior that is left in the first two, 0..1 */
     sh_real count, recent_count; /* effective number of blocks [1] */
     sh_real duration; /* of the blocks since the last refit but trials, as far as they count [s] */

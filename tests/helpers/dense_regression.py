@@ -288,7 +288,9 @@ class Oracle:
             self.build.spread = self.spread * weight**2
             self.build.of_drive = self.of_drive * weight
             yield
-            for _ in range(math.ceil(self.n / 2)):
+            unread = self.n
+            while unread > 0:
+                unread -= 2 if unread - 1 > self.n // 2 else 1
                 yield
             if self.trial:
                 self.end_trial()
@@ -298,7 +300,14 @@ class Oracle:
             if not self.trial:
                 self.use_build()
             yield
+            if not self.trial:
+                self.set_beta()
+            yield
             self.new_variances |= not self.trial
+            yield
+            self.judge_recent()
+            yield
+            self.judge()
             yield
             self.plan()
             self.pause = 0.0
@@ -328,7 +337,7 @@ class Oracle:
         self.live = self.build
         self.build = Posterior([], 1.0, 0.0, -1)  # until the next pass starts
         self.is_built = False
-        self.set_beta()
+        _, self.P = self.live.weighted()
 
     def end_trial(self) -> None:
         own = sum(self.groups[i] != self.trial for i in self.build.chosen)
@@ -350,18 +359,22 @@ class Oracle:
     def can_judge(self) -> bool:
         return self.blocks.count >= 20 and len(self.live.chosen) < self.blocks.count
 
+    def judge_recent(self) -> None:
+        """The misfit of the recent blocks, which has to be beyond chance."""
+        blocks, recent, self.recent_q = self.blocks, self.blocks.recent_count, 0.0
+        if recent >= 20 and not self.friction_drifts and self.p["regression.drift"] <= 0:
+            squares = blocks.recent.squares(self.beta) - float(self.beta @ self.beta)
+            self.recent_q = squares / recent if squares > threshold(recent) else 0.0
+
     def judge(self) -> None:
-        """The misfit of all blocks, or of the recent ones, which has to be beyond chance."""
-        blocks, N, recent = self.blocks, self.blocks.count, self.blocks.recent_count
+        """The misfit of all blocks, or of the recent ones."""
+        blocks, N = self.blocks, self.blocks.count
         if not self.can_judge():
             return
         sums = blocks.walking if self.friction_drifts else blocks.all
-        of_prior = float(self.beta @ self.beta)
-        squares = sums.squares(self.beta) - blocks.prior * of_prior
-        whole = self.q = squares / (N - len(self.live.chosen) / 2)
-        if recent >= 20 and not self.friction_drifts and self.p["regression.drift"] <= 0:
-            squares = blocks.recent.squares(self.beta) - of_prior
-            self.q = max(whole, squares / recent if squares > threshold(recent) else 0.0)
+        squares = sums.squares(self.beta) - blocks.prior * float(self.beta @ self.beta)
+        whole = squares / (N - len(self.live.chosen) / 2)
+        self.q = max(whole, self.recent_q)
         self.factor = 1.0
         if self.p["regression.memory"] > 0:
             self.factor = max(1.0, self.q)
@@ -372,7 +385,6 @@ class Oracle:
     def plan(self) -> None:
         """After each pass a trial of the next group, if it has columns."""
         was_trial, self.trial = self.trial != 0, 0
-        self.judge()
         if was_trial or self.blocks.count < 20:
             return
         number = len(self.used) - 1
@@ -499,7 +511,7 @@ class Oracle:
     def make_steps(
         self, row: Long, R: float, last: float, rough: float, measured: bool
     ) -> Iterator[None]:
-        """The eight steps after a row, spread over the ticks until the next one."""
+        """The seven steps after a row, spread over the ticks until the next one."""
         self.set_beta()
         yield
         self.new_variances = True
@@ -512,27 +524,33 @@ class Oracle:
             self.build.learn(row, 1 / R)
         yield
         blocks = self.blocks
+        if len(blocks.rows) == blocks.length:
+            self.end_block(*self.full)
         blocks.rows.append((row, 1 / R, last, rough))
         is_full = len(blocks.rows) == blocks.length
         if is_full:
-            mean, variance, count = self.full_block(measured)
-        for sums in (blocks.all, blocks.walking, blocks.recent):
+            self.full = mean, variance, _ = self.full_block(measured)
+        yield
+        for sums in (blocks.all, blocks.walking):
             if is_full:
                 sums.take(mean, 1 / variance)
             yield
-        if is_full:
-            blocks.count += count
-            blocks.recent_count += count
-            blocks.gained += count * blocks.length * self.K * self.T
-            self.watch_misfit()
-            blocks.rows.clear()
-        yield
+
+    def end_block(self, mean: Long, variance: float, count: float) -> None:
+        """After the row behind the block."""
+        blocks = self.blocks
+        blocks.recent.take(mean, 1 / variance)
+        blocks.count += count
+        blocks.recent_count += count
+        blocks.gained += count * blocks.length * self.K * self.T
+        self.watch_misfit()
+        blocks.rows.clear()
 
     def follow(self) -> None:
         """What a tick without a new row does."""
         blocks, ticks = self.blocks, max(self.K - 1, 1)
         if self.tick < ticks:
-            first, end = (math.ceil(8 * tick / ticks) for tick in (self.tick, self.tick + 1))
+            first, end = (math.ceil(7 * tick / ticks) for tick in (self.tick, self.tick + 1))
             is_busy = first < 4 or len(blocks.rows) == blocks.length
             for _ in range(first, end):
                 next(self.steps)
@@ -648,15 +666,15 @@ class Oracle:
                 complete = len(self.samples) == self.K
             if complete:
                 row = self.mean_row(filtered, loads, derivatives, errors)
-                settled = complete = self.was_at_rest(filtered, at, row)
-                if complete:
+                settled = self.was_at_rest(filtered, at, row)
+                if settled:
                     self.learn(k, filtered, row, rough)
                 self.samples.clear()
             if not complete or self.K == 1:
                 self.follow()
             if not settled:
                 self.epsilon = self.rho = 0.0
-            self.new_variances |= not settled or not self.has_row
+            self.new_variances |= not complete and not (settled and self.has_row)
             self.report(k, filtered.y[at], settled)
             self.y = float(filtered.y[at]) - self.epsilon
 
