@@ -327,6 +327,7 @@ static void set_powers(sh_joint_point *point, const sh_parameters *p, sh_real se
     sh_real power = symmetric ? x : 1, slope = symmetric ? per_phi : 0;
     int i, j;
 
+    /*@ loop unroll SH_MAX_N; */
     for (i = 0; i < SH_MAX_N; ++i) {
         const int e = sh_power_of_phi(symmetric, i);
 
@@ -336,6 +337,7 @@ static void set_powers(sh_joint_point *point, const sh_parameters *p, sh_real se
         slope = e > 0 ? slope * step : per_phi;
     }
     point->l[0] = 1;
+    /*@ loop unroll SH_MAX_M; */
     for (j = 1; j < SH_MAX_M; ++j) {
         point->l[j] = point->l[j - 1] * l;
     }
@@ -375,9 +377,13 @@ void sh_joint_point_at(sh_joint_point *point, const sh_columns *columns, const s
         set_nominal(point, p, set_point);
     }
     /*@ loop unroll SH_MAX_COLUMNS; */
-    for (i = 0; i < columns->filtered; ++i) {
+    for (i = 0; i < SH_MAX_COLUMNS; ++i) { /* all are set */
         sh_real slope = 0;
 
+        if (i >= columns->filtered) {
+            point->F[i] = point->dF[i] = 0;
+            continue;
+        }
         point->F[i] = columns->column[i].prior * signal_of(&columns->column[i], p, point, &slope);
         point->dF[i] = columns->column[i].prior * slope;
     }

@@ -133,6 +133,11 @@
  * hardly change. No simple ratio of blocks and rows, so that no rounding error decides.
  */
 #define SH_REFIT_PAUSE ((sh_real)0.0101)
+/* Duration of a row for each step that a refit makes in a step of the row [s], and most of these steps [1]: one at
+ * 1 kHz. With one at 250 Hz, too, a wrong choice of columns would last for 0.8 s. There are fewer than samples in a row.
+ */
+#define SH_TIME_OF_STEP ((sh_real)0.0065)
+#define SH_MOST_STEPS 4
 /* Pause while nothing is judged yet [s]: a refit then removes noise (detail 14), and nothing else. */
 #define SH_FIRST_PAUSE ((sh_real)0.2)
 /* Gain of the logarithm of the evidence from which a group is used: at first, and for each block [1]. So it

@@ -369,34 +369,62 @@ static int use_row(sh_regression_state *state, const sh_parameters *p, const sh_
     return 1;
 }
 
-/* What else a row changes: step 0 to 6, at most one triangular matrix each. A block that this row fills is taken in the
- * last three steps, and in the first one of them after the next row. Returns SH_NEW_*.
- */
-static int take_step(sh_regression_state *state, const sh_parameters *p, int step)
-{
-    int news = 0;
-
-    if (step == 0) {
-        sh_posterior_estimate(&state->posterior, p->prior.B, state->beta, state->per_gain,
-                              state->columns.size);
-        news = SH_NEW_COEFFICIENTS;
-    } else if (step == 1) {
-        news = SH_NEW_VARIANCES;
-    } else if (step == 2) {
-        sh_data_take(state);
-    } else if (step == 3) {
-        sh_refit_take(state);
-    } else if (step == 4) {
-        sh_blocks_end(state, p, 3);
-        sh_blocks_take(state);
-    }
-    sh_blocks_end(state, p, step - 4);
-    return news;
-}
-
 static int is_block_full(const sh_blocks *blocks)
 {
     return blocks->rows >= blocks->length;
+}
+
+/* Steps that a refit makes in a step of the row. */
+static int steps_of_refit(const sh_signals *signals)
+{
+    const int K = signals->decimation;
+    int steps = SH_MOST_STEPS;
+
+    while (steps > 1 &&
+           (steps >= K || (sh_real)steps * SH_TIME_OF_STEP > (sh_real)K * signals->design.T)) {
+        steps -= 1;
+    }
+    return steps;
+}
+
+/* Step 0 to 2 behind the row: a block that it fills is taken in all of them, and in the first one behind the next row.
+ * Else a refit goes on, by more steps if rows are long, so that it takes as much time. Returns SH_NEW_*.
+ */
+static int advance_block(sh_regression_state *state, const sh_parameters *p, int step)
+{
+    const int was_full = is_block_full(&state->blocks), steps = steps_of_refit(&state->signals);
+    int news = 0, i;
+
+    if (step == 0) {
+        sh_blocks_end(state, p, 3);
+        sh_blocks_take(state);
+    }
+    sh_blocks_end(state, p, step);
+    for (i = 0; i < steps && !was_full && !is_block_full(&state->blocks); ++i) {
+        news |= sh_refit_advance(state, p);
+    }
+    return news;
+}
+
+/* What else a row changes: step 0 to 6, at most one triangular matrix each. Returns SH_NEW_*. */
+static int take_step(sh_regression_state *state, const sh_parameters *p, int step)
+{
+    if (step == 0) {
+        sh_posterior_estimate(&state->posterior, p->prior.B, state->beta, state->per_gain,
+                              state->columns.size);
+        return SH_NEW_COEFFICIENTS;
+    }
+    if (step == 1) {
+        return SH_NEW_VARIANCES;
+    }
+    if (step == 2) {
+        sh_data_take(state);
+    } else if (step == 3) {
+        sh_refit_take(state);
+    } else {
+        return advance_block(state, p, step - 4);
+    }
+    return 0;
 }
 
 /* First of the steps in a tick since the row, of as many ticks as there are. */
@@ -405,26 +433,19 @@ static int first_step(int tick, int ticks)
     return (SH_ROW_STEPS * tick + ticks - 1) / ticks;
 }
 
-/* The steps are spread over the ticks until the next row. The refit advances in ticks in which nothing else works with
- * a triangular matrix, if there are at least three. Returns SH_NEW_*.
- */
+/* The steps are spread over the ticks until the next row. Returns SH_NEW_*. */
 static int take_steps(sh_regression_state *state, const sh_parameters *p)
 {
     const int ticks = state->signals.decimation > 1 ? state->signals.decimation - 1 : 1;
     const int tick = state->row.tick;
-    int news = 0, is_busy, step;
+    int news = 0, step;
 
     if (tick < 0 || tick >= ticks) { /* all steps are done */
         return 0;
     }
     state->row.tick = tick + 1;
-    is_busy = first_step(tick, ticks) < 4 || is_block_full(&state->blocks);
     for (step = first_step(tick, ticks); step < first_step(tick + 1, ticks); ++step) {
         news |= take_step(state, p, step);
-        is_busy = is_busy || is_block_full(&state->blocks);
-    }
-    if (!is_busy || ticks < 3) {
-        news |= sh_refit_advance(state, p);
     }
     return news;
 }

@@ -102,10 +102,9 @@ void sh_information_forget(sh_information *a, sh_real factor, sh_real least);
  */
 sh_real sh_information_drift(sh_information *a, const sh_real *v, sh_real c);
 
-/* The same in two parts: sets the row [size: size + SH_RIGHT_SIDES] of a sample. Returns its weight, <= 0, with which
- * sh_information_take lets the parameters change.
+/* The same for parameter k alone, without taking it: sets the row [size: size + SH_RIGHT_SIDES] of a sample. Returns its
+ * weight, <= 0, with which sh_information_take lets the parameter change.
  */
-sh_real sh_information_drift_sample(const sh_information *a, const sh_real *v, sh_real c,
-                                    sh_real *row);
+sh_real sh_information_drift_sample(const sh_information *a, int k, sh_real c, sh_real *row);
 
 #endif

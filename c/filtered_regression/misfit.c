@@ -254,10 +254,7 @@ static void let_friction_drift(sh_refit *refit, const sh_columns *columns, sh_in
     refit->w = 0; /* the motor may have no such friction */
     for (i = 0; i < columns->size; ++i) {
         if (columns->column[i].kind == kind) {
-            sh_real v[SH_MAX_COLUMNS] = {0};
-
-            v[i] = 1;
-            refit->w = sh_information_drift_sample(a, v, variance, refit->x);
+            refit->w = sh_information_drift_sample(a, i, variance, refit->x);
         }
     }
 }

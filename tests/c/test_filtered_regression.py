@@ -52,7 +52,7 @@ NONE, FRICTION = 1, 6  # reasons of doubt
 
 
 @pytest.mark.parametrize(
-    ("late", "D_theta", "doubt"), [(0, 2e-4, NONE), (3, 2.6e-4, NONE), (6, 2e-4, FRICTION)]
+    ("late", "D_theta", "doubt"), [(0, 2e-4, NONE), (3, 2.6e-4, NONE), (8, 2e-4, FRICTION)]
 )
 def test_a_link_that_is_read_late_looks_like_friction_below_0(
     c: Library, late: int, D_theta: float, doubt: int
@@ -62,7 +62,7 @@ def test_a_link_that_is_read_late_looks_like_friction_below_0(
     z[late:, 1] = z[: len(z) - late, 1]
     found = Estimator(c, {**REGRESSION, "prior.D_theta": 1000.0}).run(z)
     assert (found["D_theta_hat"][-1] < 0) == (doubt == FRICTION)
-    assert np.mean(found["doubt"][9000:] == doubt) > 0.98  # an instant may still have a wide interval
+    assert np.all(found["doubt"][9000:] == doubt)
     assert np.all(found["confident"][9000:] == (doubt == NONE))
 
 

@@ -524,17 +524,27 @@ class Oracle:
             self.build.learn(row, 1 / R)
         yield
         blocks = self.blocks
-        if len(blocks.rows) == blocks.length:
+        was_full = len(blocks.rows) == blocks.length
+        if was_full:
             self.end_block(*self.full)
         blocks.rows.append((row, 1 / R, last, rough))
         is_full = len(blocks.rows) == blocks.length
         if is_full:
             self.full = mean, variance, _ = self.full_block(measured)
+        elif not was_full:
+            self.pass_on()
         yield
         for sums in (blocks.all, blocks.walking):
             if is_full:
                 sums.take(mean, 1 / variance)
+            else:
+                self.pass_on()
             yield
+
+    def pass_on(self) -> None:
+        by_time = min(self.K * self.T / 0.0065, self.K - 1, 4)
+        for _ in range(int(max(by_time, 1))):
+            next(self.passes)
 
     def end_block(self, mean: Long, variance: float, count: float) -> None:
         """After the row behind the block."""
@@ -548,16 +558,12 @@ class Oracle:
 
     def follow(self) -> None:
         """What a tick without a new row does."""
-        blocks, ticks = self.blocks, max(self.K - 1, 1)
+        ticks = max(self.K - 1, 1)
         if self.tick < ticks:
             first, end = (math.ceil(7 * tick / ticks) for tick in (self.tick, self.tick + 1))
-            is_busy = first < 4 or len(blocks.rows) == blocks.length
             for _ in range(first, end):
                 next(self.steps)
-                is_busy = is_busy or len(blocks.rows) == blocks.length
             self.tick += 1
-            if not is_busy or ticks < 3:
-                next(self.passes)
 
     def watch_misfit(self) -> None:
         """Its mean over 400 blocks, in which none counts as more than 1.7 times this mean."""

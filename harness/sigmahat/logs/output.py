@@ -55,7 +55,8 @@ class EstimateWriter(AbstractContextManager["EstimateWriter"]):
         self._units = {_TIME: "s", **units}
         self._tick_of_row = samples.tick_of_row
         self._T = samples.T
-        names = [name for name, n in log.columns.items() if n == len(samples.tick_of_row)]
+        rows = len(samples.values if samples.tick_of_row is None else samples.tick_of_row)
+        names = [name for name, n in log.columns.items() if n == rows]
         self._rows = _Rows(log.batches(names, _ROWS))
         self._row = self._tick = 0
         self._writer: Any = None
@@ -65,12 +66,11 @@ class EstimateWriter(AbstractContextManager["EstimateWriter"]):
     def add(self, outputs: Mapping[str, NDArray[Any]]) -> None:
         """Writes the rows of the next ticks, with the outputs of these ticks."""
         ticks = len(next(iter(outputs.values())))
-        # An int32 as in the array: for another type, the whole array would be converted.
-        end = int(np.searchsorted(self._tick_of_row, np.int32(self._tick + ticks)))
-        tick_of_row = self._tick_of_row[self._row : end] - self._tick
-        # A row for each tick, as usual: nothing has to be copied.
-        usual = np.array_equal(tick_of_row, np.arange(ticks))
-        take: slice | NDArray[np.int32] = slice(None) if usual else tick_of_row
+        end, take = self._tick + ticks, slice(None)  # as usual: nothing has to be copied
+        if self._tick_of_row is not None:
+            # An int32 as in the array: for another type, the whole array would be converted.
+            end = int(np.searchsorted(self._tick_of_row, np.int32(end)))
+            take = self._tick_of_row[self._row : end] - self._tick
         table = self._rows.take(end - self._row)
         times = self._T * np.arange(self._tick, self._tick + ticks)
         for name, values in {_TIME: times, **outputs}.items():
@@ -110,6 +110,7 @@ class EstimateWriter(AbstractContextManager["EstimateWriter"]):
             self._thread.shutdown()
             if self._writer is not None:
                 self._writer.close()
+            pa.default_memory_pool().release_unused()  # the figure needs memory, too
 
 
 def _rounded(values: NDArray[np.float64]) -> NDArray[np.float32]:

@@ -28,6 +28,7 @@ _USUAL_INTERVALS = 3.0
 _MOST_TICKS = 5_000_000
 _MOST_TICKS_OF_MANY_ROWS = 20  # per row: the memory for the ticks goes with the size of the log
 _MOST_TICKS_PER_ROW = 200  # else the time has another unit
+_PART = 1 << 16  # samples that are compared at a time, for the memory
 _LONG_AGO = 1e6  # [s] A time that is larger counts from 1970, or from the start of a machine.
 
 
@@ -38,7 +39,8 @@ class Samples:
     T: float  # time between ticks [s]
     names: Sequence[str]  # ports
     values: Array  # [size: ticks x ports], nan where there is no value
-    tick_of_row: NDArray[np.int32]  # last tick at or before each row of the log
+    tick_of_row: NDArray[np.int32] | None
+    """Last tick at or before each row of the log; None as usual: row k is tick k."""
     notes: Sequence[str]  # what had to be done to the samples, in sentences
 
 
@@ -87,7 +89,8 @@ def _sample(log: Log, configuration: Configuration, T: float) -> Samples:
         )
     notes.insert(0, f"{len(rows)} rows over {end - start:.6g} s; {ticks} ticks of {T:g} s")
     rows -= start
-    values = np.empty((ticks, len(configuration.ports)))
+    # A column at a time, so that only those that are there take memory.
+    values = np.empty((ticks, len(configuration.ports)), order="F")
     for i, (name, port) in enumerate(configuration.ports.items()):
         if port.value is not None:
             values[:, i] = port.value
@@ -119,8 +122,10 @@ def _sample(log: Log, configuration: Configuration, T: float) -> Samples:
     return Samples(T, names, values, _tick_of(rows, T, ticks), notes)
 
 
-def _tick_of(rows: Array, T: float, ticks: int) -> NDArray[np.int32]:
-    """Last tick at or before each row; times since the first tick [s], nan where unknown."""
+def _tick_of(rows: Array, T: float, ticks: int) -> NDArray[np.int32] | None:
+    """As tick_of_row of Samples; times since the first tick [s], nan where unknown."""
+    if len(rows) == ticks and _one_for_each_tick(rows, T):
+        return None
     tick = rows / T
     tick += AT_TICK
     np.floor(tick, out=tick)
@@ -262,15 +267,19 @@ def at_ticks(
 
 
 def _one_for_each_tick(t: Array, T: float) -> bool:
-    off = t / T
-    off -= np.arange(len(t))
-    return not np.any(np.abs(off, out=off) > AT_TICK)
+    for first in range(0, len(t), _PART):
+        part = t[first : first + _PART]
+        if not np.all(np.abs(part / T - np.arange(first, first + len(part))) <= AT_TICK):
+            return False
+    return True
 
 
 def stretches(mask: ArrayLike) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Runs of true values: the first index of each run, and the index after its last index."""
-    edges = np.diff(np.concatenate([[0], np.asarray(mask, dtype=np.int8), [0]]))
-    return np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
+    padded = np.zeros(np.size(mask) + 2, dtype=np.bool_)
+    padded[1:-1] = mask
+    edges = np.flatnonzero(padded[1:] != padded[:-1])
+    return edges[::2], edges[1::2]
 
 
 _LARGEST = 1e12  # SH_LARGEST_MEASUREMENT of sigmahat.h
@@ -280,7 +289,7 @@ def refused(values: Array) -> NDArray[np.bool_]:
     """Ticks that the estimator skips because of their values [size: ticks x ports]."""
     skipped = np.zeros(len(values), dtype=np.bool_)
     for column in values.T:  # one after the other, for the memory
-        skipped |= ~(np.abs(column) <= _LARGEST)
+        skipped |= ~((column >= -_LARGEST) & (column <= _LARGEST))
     return skipped
 
 

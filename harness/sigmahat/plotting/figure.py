@@ -1,13 +1,13 @@
 """Figures with Matplotlib: panels that are drawn, and files in one style."""
 
 from collections.abc import Callable, Sequence
-from io import BytesIO
 from pathlib import Path
 from typing import Any, TypeVar
 
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from PIL import Image
 
@@ -102,8 +102,10 @@ def save(draw: Callable[[Source], Figure], source: Source, path: Path) -> None:
         figure = draw(source)
         figure.savefig(path.with_suffix(".svg"), metadata={"Date": None})
         figure.set_layout_engine("none")  # the layout is kept, because it takes long to compute
-        pixels = BytesIO()
-        figure.savefig(pixels, format="png", pil_kwargs={"compress_level": 0})
-    with Image.open(pixels) as image:  # 256 colours look the same in a third of the bytes
-        few = image.convert("RGB").quantize(256, method=Image.Quantize.FASTOCTREE)
-        few.save(path.with_suffix(".png"))
+        figure.set_dpi(_STYLE["savefig.dpi"])
+        canvas = FigureCanvasAgg(figure)
+        canvas.draw()
+    # 256 colours look the same in a third of the bytes.
+    pixels = canvas.get_width_height(), canvas.buffer_rgba(), "raw", "RGBA", 0, 1
+    image = Image.frombuffer("RGBA", *pixels).convert("RGB")
+    image.quantize(256, method=Image.Quantize.FASTOCTREE).save(path.with_suffix(".png"))

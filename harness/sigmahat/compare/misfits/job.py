@@ -165,7 +165,7 @@ def estimate(experiment: Experiment, motion: Motion, torque_gain: float) -> Scor
     """The score of FilteredRegression on the samples of a run; torque_gain as for settings()."""
     names = list(motion.measured)
     values = np.column_stack(list(motion.measured.values()))
-    samples = Samples(experiment.T, names, values, np.arange(len(values), dtype=np.int32), ())
+    samples = Samples(experiment.T, names, values, None, ())
     with Slave(installed(ESTIMATOR), "FilteredRegression") as slave:
         slave.initialize(settings(experiment, torque_gain))
         (found,) = play(slave, samples, len(values))
