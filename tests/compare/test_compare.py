@@ -71,15 +71,18 @@ def test_finds_the_error_of_the_friction(runs: list[list[Row]]) -> None:
     """From 0.3 Hz on within 10 % of the error, on the AwAS. Not at 0.3 Hz if B is unknown too:
     inertia and friction by the torque of the motor look alike there, and no accuracy is asked. At
     20 Hz, where the motor reverses every 25 ms, friction and a delay of its reversals look nearly
-    alike: within 25 %."""
+    alike: within 25 %. So with Coulomb friction at 0.3 Hz, where 20 seeds have a standard
+    deviation of 12 %."""
     for row in (row for run in runs for row in run):
         motion = labels.motion(row.joint)
         if motion not in FREQUENCIES[1:]:
             continue
-        bounds = BOUNDS[labels.group(row), labels.case(row.case)]
+        group = labels.group(row)
+        bounds = BOUNDS[group, labels.case(row.case)]
         if math.isfinite(bounds[FREQUENCIES.index(motion)]):
             D_theta = row.performance[REGRESSION].D_theta
-            share = 0.25 if motion == "20 Hz" else 0.1
+            is_hard = motion == "20 Hz" or (group, motion) == (FRICTION, "0.3 Hz")
+            share = 0.25 if is_hard else 0.1
             assert D_theta == pytest.approx(1e-3, abs=share * 1e-4), row
 
 
