@@ -223,7 +223,9 @@ class Oracle:
         self.phi_min, self.phi_max = math.inf, -math.inf
         self.live = self.posterior(0, 1.0)
         self.blocks = Blocks(n, self.w, self.T, self.K)
+        self.full = np.zeros(0, np.longdouble), 1.0, 0.0  # mean, variance and count of a full block
         self.q = self.factor = 1.0
+        self.recent_q = 0.0
         self.surplus = self.spread = self.rounding = 0.0
         self.of_drive = np.zeros(2)
         self.trial = self.last_trial = 0

@@ -66,7 +66,8 @@ class EstimateWriter(AbstractContextManager["EstimateWriter"]):
     def add(self, outputs: Mapping[str, NDArray[Any]]) -> None:
         """Writes the rows of the next ticks, with the outputs of these ticks."""
         ticks = len(next(iter(outputs.values())))
-        end, take = self._tick + ticks, slice(None)  # as usual: nothing has to be copied
+        end = self._tick + ticks
+        take: slice | NDArray[np.int32] = slice(None)  # as usual: nothing has to be copied
         if self._tick_of_row is not None:
             # An int32 as in the array: for another type, the whole array would be converted.
             end = int(np.searchsorted(self._tick_of_row, np.int32(end)))

@@ -103,7 +103,7 @@ def save(draw: Callable[[Source], Figure], source: Source, path: Path) -> None:
         figure.savefig(path.with_suffix(".svg"), metadata={"Date": None})
         figure.set_layout_engine("none")  # the layout is kept, because it takes long to compute
         figure.set_dpi(_STYLE["savefig.dpi"])
-        canvas = FigureCanvasAgg(figure)
+        canvas: Any = FigureCanvasAgg(figure)  # Matplotlib has no types for it
         canvas.draw()
     # 256 colours look the same in a third of the bytes.
     pixels = canvas.get_width_height(), canvas.buffer_rgba(), "raw", "RGBA", 0, 1
