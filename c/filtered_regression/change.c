@@ -1,9 +1,12 @@
-/* A stiffness that changes (detail 15): two hypotheses predict each block, and the estimate follows the better
- * one.
+/* A stiffness that changes (detail 15): three hypotheses predict each block, and the estimate follows the best one.
  *
  *     0  the joint is as before: the prior and all blocks
  *     1  the spring has changed since t: the same at t, but of its columns, which are the first ones, only the
  *        prior is known. What the data say about motor and friction is in the rows behind.
+ *     2  friction has changed: the same for its columns, which are the last ones before the inertia
+ *
+ * Hypothesis 2 begins when there is evidence against hypothesis 0. It has the blocks of friction that drifts, which are
+ * those of hypothesis 0 again if nothing has changed.
  */
 #include "constants.h"
 #include "regression.h"
@@ -23,12 +26,36 @@ void sh_change_start(sh_regression_state *state)
  */
 static void begin(sh_regression_state *state)
 {
-    const sh_blocks *blocks = &state->blocks;
+    sh_blocks *blocks = &state->blocks;
     sh_change *change = &state->change;
 
     change->changed = state->friction_drifts ? blocks->drifting : blocks->constant;
-    sh_information_restart(&change->changed, state->columns.spring, blocks->prior);
+    sh_information_restart(&change->changed, 0, state->columns.spring, blocks->prior);
     change->evidence = change->blocks = 0;
+}
+
+/* Hypothesis 2 begins now, if there is friction that does not drift anyway. */
+static void begin_friction(sh_regression_state *state)
+{
+    const sh_columns *columns = &state->columns;
+
+    if (columns->friction < columns->inertia && !state->friction_drifts) {
+        sh_information_restart(&state->blocks.drifting, columns->friction, columns->inertia,
+                               state->blocks.prior);
+        state->change.friction_blocks = 1;
+        state->change.preference = 0;
+    }
+}
+
+/* Nothing has changed. Blocks that other friction explains clearly better may still show that it drifts. */
+static void end_friction(sh_regression_state *state)
+{
+    sh_change *change = &state->change;
+
+    if (change->friction_blocks > 0 && !(change->preference < -SH_CLEARLY_BETTER)) {
+        state->blocks.drifting = state->blocks.constant;
+    }
+    change->friction_blocks = 0;
 }
 
 /* A block that contradicts hypothesis 1 while one block alone may be all the evidence: the spring has changed behind t.
@@ -45,19 +72,19 @@ int sh_change_begins_anew(sh_regression_state *state, sh_real error)
     return 1;
 }
 
-/* The blocks are those of hypothesis 1, and so are the data: those of all samples contain some of behind t, which
- * contradict what they say about the motor. The next posterior follows. It has the prior twice, as these data
- * contain it; what the blocks say soon outweighs it.
+/* The blocks are those of the hypothesis that is in blocks.drifting, and so are the data: those of all samples contain
+ * some of behind t, which contradict what they say about the motor. The next posterior follows. It has the prior twice,
+ * as these data contain it; what the blocks say soon outweighs it.
  */
 static void adopt(sh_regression_state *state, const sh_parameters *p)
 {
     sh_blocks *blocks = &state->blocks;
     sh_change *change = &state->change;
 
-    blocks->constant = blocks->drifting = change->changed;
+    blocks->constant = blocks->drifting;
     sh_information_start(&blocks->recent, state->columns.size, 1);
     blocks->recent_count = 0;
-    state->data = change->changed;
+    state->data = blocks->drifting;
     state->surplus = state->spread = state->rounding = 0;
     state->noise.information = state->noise.gain = 0;
     state->refit.trial = 0;
@@ -65,8 +92,23 @@ static void adopt(sh_regression_state *state, const sh_parameters *p)
     change->following = 1;
     change->usual_misfit *=
         SH_SUDDEN_MISFIT; /* what was learned of the motor may not fit as well */
-    state->history.change_age = 0;
+    change->friction_blocks = 0;
     begin(state);
+}
+
+/* Hypothesis 1 is right if it is clearly better than hypothesis 2, or better in the end. */
+static void decide(sh_regression_state *state, const sh_parameters *p)
+{
+    sh_change *change = &state->change;
+
+    if (!(change->friction_blocks > 0) || change->preference > SH_CLEARLY_BETTER ||
+        (change->friction_blocks >= SH_BLOCKS_TO_DECIDE && change->preference >= 0)) {
+        state->blocks.drifting = change->changed;
+        state->history.change_age = 0;
+        adopt(state, p);
+    } else if (change->friction_blocks >= SH_BLOCKS_TO_DECIDE) {
+        adopt(state, p);
+    }
 }
 
 /* The usual misfit is a mean as the usual size of errors is, of 1.7 times itself at most. */
@@ -77,12 +119,31 @@ static void watch_misfit(sh_change *change, sh_real misfit)
     change->usual_misfit += (sh_fmin(misfit, SH_SUDDEN_MISFIT * usual) - usual) / change->judged;
 }
 
+/* h += min(z_2 / l, 50) - min(z_1 / l, 50), but not in the first block of hypothesis 2 */
+static void compare_with_friction(sh_change *change, sh_real spring, sh_real friction)
+{
+    if (change->friction_blocks > 1) {
+        change->preference += sh_fmin(friction / change->level, SH_LARGEST_EVIDENCE) -
+                              sh_fmin(spring / change->level, SH_LARGEST_EVIDENCE);
+    }
+    change->friction_blocks += change->friction_blocks > 0 ? 1 : 0;
+}
+
+/* The usual size of errors is their mean, in which a block counts as 9 times itself at most. */
+static void watch_level(sh_change *change, sh_real before)
+{
+    const sh_real level = change->level;
+
+    change->level =
+        sh_fmax(level + (sh_fmin(before, SH_LARGEST_LEVEL * level) - level) / change->judged, 1);
+}
+
 /* g = max(0, g + min(z_0 / l, c) - 2 min(z_1 / l, 12.5) - 2), c = max(50 / m, 25), where z are squares of errors over
  * their variances, l >= 1 is their usual size, and m >= 1 is the usual misfit: a misfit makes both hypotheses wrong all
  * the time.
  */
 void sh_change_judge(sh_regression_state *state, const sh_parameters *p, sh_real before,
-                     sh_real changed)
+                     sh_real spring, sh_real friction)
 {
     sh_change *change = &state->change;
     const sh_real level = change->level;
@@ -92,8 +153,8 @@ void sh_change_judge(sh_regression_state *state, const sh_parameters *p, sh_real
         return;
     }
     change->judged = sh_fmin(change->judged + 1, SH_LEVEL_BLOCKS);
-    change->level =
-        sh_fmax(level + (sh_fmin(before, SH_LARGEST_LEVEL * level) - level) / change->judged, 1);
+    compare_with_friction(change, spring, friction);
+    watch_level(change, before);
     watch_misfit(change, sh_sqrt(state->misfit));
     if (state->blocks.count < SH_SHORTEST_PAST) {
         return;
@@ -101,12 +162,18 @@ void sh_change_judge(sh_regression_state *state, const sh_parameters *p, sh_real
     most = sh_fmax(SH_LARGEST_EVIDENCE / change->usual_misfit, SH_LEAST_LIMIT_OF_EVIDENCE);
     change->blocks += 1;
     change->evidence = sh_fmax(change->evidence + sh_fmin(before / level, most) -
-                                   2 * sh_fmin(changed / level, SH_CONTRADICTS) - 2,
+                                   2 * sh_fmin(spring / level, SH_CONTRADICTS) - 2,
                                0);
-    if (change->evidence > SH_HAS_CHANGED * sh_sqrt(level) && change->following == 0) {
-        adopt(state, p);
-    } else if (!(change->evidence > 0) || change->blocks >= SH_LONGEST_TEST) {
+    if (!(change->evidence > 0) || change->blocks >= SH_LONGEST_TEST) {
+        end_friction(state);
         begin(state);
+    } else if (change->following == 0 && change->evidence > SH_MAY_HAVE_CHANGED) {
+        if (!(change->friction_blocks > 0)) {
+            begin_friction(state);
+        }
+        if (change->evidence > SH_HAS_CHANGED * sh_sqrt(level)) {
+            decide(state, p);
+        }
     }
 }
 

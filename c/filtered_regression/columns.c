@@ -69,8 +69,6 @@ const sh_column_kind sh_column_kinds[SH_COLUMN_KINDS] = {
     [SH_COLUMN_DAMPING] = {PRIOR(damping), K_0, 0, 0},
     [SH_COLUMN_SIN_Q] = {PRIOR(eccentric), K_0, 0, SH_IS_FILTERED},
     [SH_COLUMN_COS_Q] = {PRIOR(eccentric), K_0, 0, SH_IS_FILTERED},
-    [SH_COLUMN_LOAD] = {PRIOR(load_friction), ONE, 0, SH_IS_MOTOR},
-    [SH_COLUMN_DRIVE] = {PRIOR(load_friction), ONE, 0, SH_IS_MOTOR},
     [SH_COLUMN_DELAY] = {PRIOR(delay), ONE, 0, 0},
     [SH_COLUMN_REVERSAL] = {PRIOR(reversal), TAU_C, 0, SH_IS_MOTOR},
     [SH_COLUMN_HIGHER_POWER] = {PRIOR(power), TAU_E, 1, POWER},
@@ -81,6 +79,8 @@ const sh_column_kind sh_column_kinds[SH_COLUMN_KINDS] = {
     [SH_COLUMN_POSSIBLE_KNEE] = {PRIOR(power), TAU_E, 3, FILTERED_CURVE},
     [SH_COLUMN_SIN_M] = {PRIOR(eccentric_motor), ONE, 5, SH_IS_MOTOR},
     [SH_COLUMN_COS_M] = {PRIOR(eccentric_motor), ONE, 5, SH_IS_MOTOR},
+    [SH_COLUMN_LOAD] = {PRIOR(load_friction), ONE, 0, SH_IS_MOTOR},
+    [SH_COLUMN_DRIVE] = {PRIOR(load_friction), ONE, 0, SH_IS_MOTOR},
     [SH_COLUMN_VISCOUS] = {PRIOR(D_theta), ONE, 0, MOTOR},
     [SH_COLUMN_COULOMB] = {PRIOR(tau_coulomb), ONE, 0, MOTOR},
     [SH_COLUMN_INERTIA] = {PRIOR(B), ONE, 0, MOTOR},
@@ -175,7 +175,9 @@ static void add(column_list *list, const sh_parameters *p, int kind, int i, int 
     list->size += 1;
 }
 
-/* Those of the spring are the first ones, see change.c; behind them are the others that have a filter of their own. */
+/* Those of the spring are the first ones; behind them are the others that have a filter of their own. Those of friction
+ * are the last ones before the inertia. See change.c.
+ */
 static void list_columns(const sh_parameters *p, column_list *list)
 {
     const int n = p->rls.n, m = p->rls.m, linear = sh_torque_basis_linear(p->rls.symmetric);
@@ -221,14 +223,14 @@ static void list_columns(const sh_parameters *p, column_list *list)
     if (m > 1) {
         add(list, p, SH_COLUMN_DAMPING, 0, m - 1);
     }
-    add(list, p, SH_COLUMN_LOAD, 0, 0);
-    if (p->prior.tau_coulomb > 0) { /* else the motor has no dry friction */
-        add(list, p, SH_COLUMN_DRIVE, 0, 0);
-    }
     add(list, p, SH_COLUMN_DELAY, 0, 0);
     add(list, p, SH_COLUMN_REVERSAL, 0, 0);
     add(list, p, SH_COLUMN_SIN_M, 0, 0);
     add(list, p, SH_COLUMN_COS_M, 0, 0);
+    add(list, p, SH_COLUMN_LOAD, 0, 0);
+    if (p->prior.tau_coulomb > 0) { /* else the motor has no dry friction */
+        add(list, p, SH_COLUMN_DRIVE, 0, 0);
+    }
     add(list, p, SH_COLUMN_VISCOUS, 0, 0);
     add(list, p, SH_COLUMN_COULOMB, 0, 0);
     add(list, p, SH_COLUMN_INERTIA, 0, 0);
@@ -251,12 +253,15 @@ void sh_columns_start(sh_columns *columns, const sh_parameters *p)
     columns->size = sh_columns_count(p);
     columns->has_nominal = sh_has_nominal_curve(p);
     columns->spring = columns->knees = columns->filtered = 0;
+    columns->friction = columns->inertia = 0;
     /*@ loop unroll SH_MAX_COLUMNS; */
     for (i = 0; i < columns->size; ++i) {
         const sh_column *column = &columns->column[i];
 
         columns->spring += sh_column_is(column, SH_IS_SPRING);
         columns->filtered += sh_column_is(column, SH_IS_SPRING | SH_IS_FILTERED);
+        columns->friction += column->kind < SH_COLUMN_LOAD;
+        columns->inertia += column->kind < SH_COLUMN_INERTIA;
         columns->knees += sh_column_is(column, SH_IS_SPRING) && column->kind < SH_COLUMN_DEAD_ZONE;
     }
 }

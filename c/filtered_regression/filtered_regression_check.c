@@ -21,7 +21,8 @@ static int are_columns(const sh_columns *columns, const sh_parameters *p)
     (void)memset(&started, 0, sizeof started);
     sh_columns_start(&started, p);
     if (columns->spring != started.spring || columns->knees != started.knees ||
-        columns->filtered != started.filtered) {
+        columns->filtered != started.filtered || columns->friction != started.friction ||
+        columns->inertia != started.inertia) {
         return 0;
     }
     /*@ loop unroll SH_MAX_COLUMNS; */

@@ -19,12 +19,11 @@
  */
 void sh_information_start(sh_information *a, int size, sh_real precision);
 
-/* Starts again with the first parameters: they get the estimate 0 and the precision. What the samples say about
- * the others, if the first ones are not known, stays.
- *
- * count  number of first parameters, >= 0; all of them if it is larger than size
+/* Starts again with the parameters first..end - 1: they get the estimate 0 and the precision. What the samples say
+ * about the parameters behind, if these and those before are not known, stays, and so does what they say about those
+ * before if all others are known. Numbers behind the last parameter count as the number of parameters.
  */
-void sh_information_restart(sh_information *a, int count, sh_real precision);
+void sh_information_restart(sh_information *a, int first, int end, sh_real precision);
 
 /* Takes a sample.
  *
@@ -102,8 +101,8 @@ void sh_information_forget(sh_information *a, sh_real factor, sh_real least);
  */
 sh_real sh_information_drift(sh_information *a, const sh_real *v, sh_real c);
 
-/* The same for parameter k alone, without taking it: sets the row [size: size + SH_RIGHT_SIDES] of a sample. Returns its
- * weight, <= 0, with which sh_information_take lets the parameter change.
+/* The same for parameter k alone, without taking it: sets the row [size: size + SH_RIGHT_SIDES] of a sample. Returns
+ * its weight, <= 0, with which sh_information_take lets the parameter change.
  */
 sh_real sh_information_drift_sample(const sh_information *a, int k, sh_real c, sh_real *row);
 

@@ -111,12 +111,12 @@ static void end_block(sh_regression_state *state, const sh_parameters *p, int st
     } else if (step == 1) {
         blocks->error = take_block(&blocks->constant, mean, w, 0);
     } else if (step == 2) {
-        error = take_block(&blocks->drifting, mean, w, 0);
+        error = change->friction_error = take_block(&blocks->drifting, mean, w, 0);
         blocks->error = state->friction_drifts ? error : blocks->error;
     } else {
         (void)take_block(&blocks->recent, mean, w, 0);
         count_block(state);
-        sh_change_judge(state, p, blocks->error, change->error);
+        sh_change_judge(state, p, blocks->error, change->error, change->friction_error);
         sh_blocks_interrupt(blocks);
     }
 }
@@ -221,14 +221,14 @@ void sh_misfit_judge(sh_regression_state *state, const sh_parameters *p)
 
 /* ---- drift of friction, detail 10 -------------------------------------------------------- */
 
-/* Whether friction drifts, by the residuals of both regressions. */
+/* Whether friction drifts, by the residuals of both regressions. Not while the second one tests other friction. */
 static void judge_drift(sh_regression_state *state)
 {
     const sh_blocks *blocks = &state->blocks;
     const sh_real N = blocks->count, parameters = (sh_real)state->columns.size;
     const sh_real constant = blocks->constant.squares, drifting = blocks->drifting.squares;
 
-    if (!(N > 2 * parameters)) {
+    if (!(N > 2 * parameters) || state->change.friction_blocks > 0) {
         return;
     }
     if (drifting < SH_DRIFT_BEGINS * constant && constant > (N - parameters) * chance(N) / N) {

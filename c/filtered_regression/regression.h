@@ -50,8 +50,6 @@ enum {
     SH_COLUMN_DAMPING, /* damping of the spring, encoders that are read at different times */
     SH_COLUMN_SIN_Q,   /* link encoder that is not centred */
     SH_COLUMN_COS_Q,
-    SH_COLUMN_LOAD,         /* friction that grows with the torque of the spring */
-    SH_COLUMN_DRIVE,        /* friction that grows with the torque of the motor */
     SH_COLUMN_DELAY,        /* torque that is late or early */
     SH_COLUMN_REVERSAL,     /* friction that reverses late or early */
     SH_COLUMN_HIGHER_POWER, /* two more powers of the deformation */
@@ -62,7 +60,9 @@ enum {
     SH_COLUMN_POSSIBLE_KNEE, /* the same, if nobody knows of a knee */
     SH_COLUMN_SIN_M,         /* motor encoder that is not centred */
     SH_COLUMN_COS_M,
-    SH_COLUMN_VISCOUS, /* d. It and what follows stand last in a posterior */
+    SH_COLUMN_LOAD, /* friction that grows with the torque of the spring; what follows stands last */
+    SH_COLUMN_DRIVE,   /* friction that grows with the torque of the motor */
+    SH_COLUMN_VISCOUS, /* d */
     SH_COLUMN_COULOMB, /* tau_C */
     SH_COLUMN_INERTIA, /* b: the last column */
     SH_COLUMN_KINDS
@@ -265,11 +265,11 @@ void sh_change_start(sh_regression_state *state);
  */
 int sh_change_begins_anew(sh_regression_state *state, sh_real error);
 
-/* Compares the hypotheses by the squares of their errors over the variances in a block: as before, and as
- * changed.
+/* Compares the hypotheses by the squares of their errors over the variances in a block: as before, with another spring,
+ * and with other friction.
  */
 void sh_change_judge(sh_regression_state *state, const sh_parameters *p, sh_real before,
-                     sh_real changed);
+                     sh_real spring, sh_real friction);
 
 /* The misfit over its usual value [1]. */
 sh_real sh_change_misfit(const sh_regression_state *state);
@@ -291,7 +291,9 @@ void sh_data_take(sh_regression_state *state);
 /* Takes what the newest row left for the refit, if one is running. Nothing may be read in between. */
 void sh_refit_take(sh_regression_state *state);
 
-/* Takes a row of the data of all samples, two where they are short, or does the next step at the end of a refit. Returns SH_NEW_*. */
+/* Takes a row of the data of all samples, two where they are short, or does the next step at the end of a refit.
+ * Returns SH_NEW_*.
+ */
 int sh_refit_advance(sh_regression_state *state, const sh_parameters *p);
 
 #endif

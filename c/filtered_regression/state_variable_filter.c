@@ -29,8 +29,8 @@ void sh_state_variable_filter_start(sh_state_variable_filter *filter, sh_real x,
     filter->behind[0] = filter->behind[1] = filter->behind[2] = x - before;
 }
 
-/* Advances by T, in which the signal rises by so much. In the steady state of a ramp, the output of stage i is i + 1 times
- * 1 / (w T) samples behind the input. Deviations from that decay as in the filter without input.
+/* Advances by T, in which the signal rises by so much. In the steady state of a ramp, the output of stage i is
+ * (i + 1) / (w T) samples behind the input. Deviations from that decay as in the filter without input.
  */
 static void advance(sh_state_variable_filter *filter, const sh_filter_design *design, sh_real rise)
 {

@@ -136,6 +136,8 @@ typedef struct {
     int spring;   /* the first ones, so many, make up the torque of the spring */
     int knees;    /* from this one on, they may have a slope that changes at once */
     int filtered; /* the first ones, so many, have a signal: the torque of the spring, or a filter */
+    int friction;    /* from this one on, to the one before inertia, they are friction */
+    int inertia;     /* the last one; the size if there is none */
     int has_nominal; /* 1: a curve rls.eta_0 is given */
     sh_column column[SH_MAX_COLUMNS];
 } sh_columns;
@@ -155,8 +157,8 @@ enum {
     SH_FILTERS
 };
 
-/* Filters of the columns whose entry is their output, as sh_state_variable_filter. Each number stands side by side for all of them, so that
- * compilers compute with several columns at once.
+/* Filters of the columns whose entry is their output, as sh_state_variable_filter. Each number stands side by side for
+ * all of them, so that compilers compute with several columns at once.
  */
 typedef struct {
     sh_real input[SH_MAX_COLUMNS], behind[3][SH_MAX_COLUMNS];
@@ -258,7 +260,12 @@ typedef struct {
         judged; /* mean square of a block's error over its variance, and of how many blocks */
     sh_real usual_misfit; /* of the estimate, the mean over as many blocks [1] */
     sh_real evidence;     /* of the change [1] */
-    sh_real error; /* of the last block under this hypothesis: its square over its variance [1] */
+    sh_real
+        friction_blocks; /* since the hypothesis of other friction began, in blocks.drifting; 0: it has not */
+    sh_real
+        preference; /* for another spring over other friction, by the squares of their errors [1] */
+    /* Of the last block with another spring, and with other friction: squares over their variances [1] */
+    sh_real error, friction_error;
 } sh_change;
 
 /* The next posterior while it is computed from all data, refit.c. */

@@ -2,12 +2,13 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 import pytest
 
 from c_library import Array, Estimator, Library
-from regression_joint import SETTINGS, STIFFNESS, Joint, MisfitJoint, T
+from regression_joint import D_THETA, SETTINGS, STIFFNESS, Joint, MisfitJoint, T
 
 REGRESSION = {"method": 2, "rls.n": 3}
 CHANGE = 9
@@ -50,7 +51,7 @@ def test_a_step_of_the_stiffness_is_followed(c: Library, frequency: float, facto
     later = joint.t >= AT
     assert np.all(age[~later] == -1)
     first = np.flatnonzero(age >= 0)[0]
-    assert joint.t[first] - AT < 0.25
+    assert joint.t[first] - AT < 0.55
     assert age[first] == pytest.approx(0.0, abs=2 * T)
     assert found["doubt"][first] == CHANGE and not found["confident"][first]
     assert T * np.count_nonzero(found["confident"].astype(bool) & (error > 0.2)) < 1.0
@@ -146,6 +147,31 @@ def test_the_age_is_the_time_since_the_last_change(c: Library) -> None:
 def test_a_misfit_is_no_change(c: Library, joint: Joint, parameters: dict[str, float]) -> None:
     found = Estimator(c, {**REGRESSION, **parameters}).run(joint.measurements())
     assert np.all(found["change_age"] == -1)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [{"tau_coulomb": 0.02}, {"tau_coulomb": 0.005}, {"load_friction": 0.08}]
+    + [{"D_theta": D_THETA * factor} for factor in (0.7, 1.3)],
+    ids=lambda change: " ".join(f"{name} {value:g}" for name, value in change.items()),
+)
+def test_friction_that_changes_is_told_from_the_spring(
+    c: Library, change: dict[str, float]
+) -> None:
+    """GIVEN friction that changes at 12 s, in two motions with six seeds, THEN a change of the
+    spring is reported in a quarter of the runs at most, and the stiffness is right 10 s later."""
+    reported = 0
+    for kind, seed in product((MisfitJoint, Joint), range(1, 7)):
+        motion = {} if kind is MisfitJoint else {"frequency": 0.5, "amplitude": 1.6}
+        joint = kind(duration=26.0, seed=seed, **motion)
+        joint = replace(joint, tau_coulomb=0.01, load_friction=0.03)
+        z, later = joint.measurements(), joint.t >= 12.0
+        z[later] = replace(joint, **change).measurements()[later]
+        found = Estimator(c, {**REGRESSION, "prior.B": 0.1}).run(z)
+        error = np.abs(found["sigma"] / joint.sigma - 1)
+        assert np.max(error[joint.t > 22.0]) < 0.1
+        reported += bool(np.any(found["change_age"] >= 0))
+    assert reported <= 3
 
 
 @pytest.mark.parametrize("parameters", [{"regression.memory": 0.0}, {"method": 1}])

@@ -53,7 +53,7 @@ SIZE = 33  # number of columns with these parameters
 INTEGERS_OF_FILTERED_REGRESSION = [
     *("modality", "friction_drifts", "stiffness_known", "signals.begun", "data.size"),
     *("columns.size", "columns.spring", "columns.knees", "columns.filtered"),
-    "columns.has_nominal",
+    *("columns.friction", "columns.inertia", "columns.has_nominal"),
     *("columns.column.kind", "columns.column.i"),
     *("columns.column.j", "refit.unread", "refit.step", "refit.trial", "refit.last_trial"),
     "refit.used",

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from c_library import Array, Library
+from dense_change import Change
 from dense_signals import (
     CURVE,
     GAPS,
@@ -46,6 +47,7 @@ START: Parameters = {  # start values, with rls.n for the AwAS and an unknown in
     **{"prior.delay": 2e-3, "prior.reversal": 2e-3, "prior.power": 1.0, "prior.gap": 0.02},
     **{"prior.hysteresis": 0.01, "prior.eccentric_motor": 1e-4},
 }
+FRICTION = ("LOAD", "DRIVE", "VISCOUS", "COULOMB")
 EQUATION = ("POWER", "NOMINAL", "VISCOUS", "COULOMB", "INERTIA")
 
 
@@ -84,6 +86,14 @@ class Information:
         rows, D, rest = self.factors()
         self.matrix = (rows.T * np.maximum(D * keep, self.least)) @ rows
         self.matrix[-1, -1] += rest * keep
+
+    def restart(self, first: int, end: int, precision: float) -> None:
+        """Parameters of which only this precision is known, if all behind them are known."""
+        rows, D, rest = self.factors()
+        rows[first:end] = np.eye(self.size, len(self.matrix))[first:end]
+        D[first:end] = precision
+        self.matrix = (rows.T * D) @ rows
+        self.matrix[-1, -1] += rest
 
     def walk_sample(self, v: Long, c: float) -> tuple[Long, float]:
         """The row, and its weight, that add c v v' to the inverse."""
@@ -241,8 +251,11 @@ class Oracle:
         self.settling, self.starting = 0.0, 12 / self.w
         self.rough = 0.0
         self.once_used: set[int] = set()  # groups that a trial has shown to be needed
-        # Passes in which the recent data agreed by themselves; blocks of the usual misfit.
-        self.changes, self.judged, self.usual_misfit = 0, 0, 1.0
+        self.changes = 0  # passes in which the recent data agreed by themselves
+        friction = [i for i, kind in enumerate(self.kinds) if kind in FRICTION]
+        first = friction[0] if friction else 0
+        springs = int(np.count_nonzero(self.of_spring))
+        self.change = Change(self.blocks.recent, springs, slice(first, first + len(friction)))
         self.out: dict[str, list[Any]] = defaultdict(list)
         pulse = np.concatenate([[0.0], np.full(self.K, 1 / self.K), np.zeros(20000)])
         response = [through(pulse, order, self.w, self.T) for order in (0, 2)]
@@ -408,7 +421,7 @@ class Oracle:
         yield
         if does_drift:
             sums.take(*sample)
-        if step == 1 and 2 * self.n < N:
+        if step == 1 and 2 * self.n < N and self.change.friction_blocks == 0:
             constant, walking = blocks.all.rest, blocks.walking.rest
             if walking < 0.8 * constant and constant > (N - self.n) * threshold(N) / N:
                 self.friction_drifts = True
@@ -427,7 +440,7 @@ class Oracle:
             N = blocks.recent_count
             has_changed = N > 20 and blocks.recent.rest < threshold(N)
             self.changes += has_changed
-            sudden = min(math.sqrt(max(1.0, self.q)) / self.usual_misfit / 3, 10.0)
+            sudden = min(math.sqrt(max(1.0, self.q)) / self.change.usual_misfit / 3, 10.0)
             keep = math.exp(-gained * max(sudden, 5.0 if has_changed else 1.0) / memory)
             for sums in everything:
                 sums.fade(keep)
@@ -533,6 +546,7 @@ class Oracle:
         is_full = len(blocks.rows) == blocks.length
         if is_full:
             self.full = mean, variance, _ = self.full_block(measured)
+            self.change.take(mean, variance, blocks, self.friction_drifts)
         elif not was_full:
             self.pass_on()
         yield
@@ -555,7 +569,8 @@ class Oracle:
         blocks.count += count
         blocks.recent_count += count
         blocks.gained += count * blocks.length * self.K * self.T
-        self.watch_misfit()
+        if self.p["regression.memory"] > 0:
+            self.change.judge(math.sqrt(max(1.0, self.q)), blocks, self.friction_drifts)
         blocks.rows.clear()
 
     def follow(self) -> None:
@@ -566,13 +581,6 @@ class Oracle:
             for _ in range(first, end):
                 next(self.steps)
             self.tick += 1
-
-    def watch_misfit(self) -> None:
-        """Its mean over 400 blocks, in which none counts as more than 1.7 times this mean."""
-        if self.p["regression.memory"] > 0:
-            self.judged = min(self.judged + 1, 400)
-            most = min(math.sqrt(max(1.0, self.q)), 1.7 * self.usual_misfit)
-            self.usual_misfit += (most - self.usual_misfit) / self.judged
 
     def full_block(self, measured: bool) -> tuple[Long, float, float]:
         """Mean row, its variance, and as how many independent blocks it counts."""

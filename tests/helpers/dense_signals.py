@@ -97,11 +97,11 @@ def columns(p: Parameters, nominal: bool) -> list[Column]:
     found += [(f"{name}_Q", 0, of("eccentric") * K_0) for name in ("SIN", "COS")]
     found += [("HYSTERESIS", i, of("hysteresis") * tau_e) for i in range(3)]
     found += [("DAMPING", j, of("damping") * K_0) for j in sorted({0, m - 1})]
-    dry = of("tau_coulomb") > 0
-    found += [("LOAD", 0, of("load_friction")), ("DRIVE", 0, of("load_friction") if dry else 0.0)]
     found += [("DELAY", 0, of("delay"))]
     found += [("REVERSAL", 0, of("reversal") * of("tau_coulomb"))]
     found += [(f"{name}_M", 0, of("eccentric_motor")) for name in ("SIN", "COS")]
+    dry = of("tau_coulomb") > 0
+    found += [("LOAD", 0, of("load_friction")), ("DRIVE", 0, of("load_friction") if dry else 0.0)]
     found += [("VISCOUS", 0, of("D_theta")), ("COULOMB", 0, of("tau_coulomb"))]
     found += [("INERTIA", 0, of("B"))]
     return [column for column in found if column[2] > 0]

@@ -1,0 +1,74 @@
+"""The hypotheses of a change of FilteredRegression in numpy, as c/filtered_regression/change.c."""
+
+from copy import deepcopy
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from oracle import solve
+
+if TYPE_CHECKING:
+    from dense_regression import Blocks, Information, Long
+
+
+def squared_error(sums: "Information", row: "Long", variance: float) -> float:
+    """Square of the prediction error of y in a row, over its variance."""
+    n = sums.size
+    A, x = sums.matrix[:n, :n], row[:n]
+    error = row[-1] - x @ solve(A, sums.matrix[:n, -1:])[:, 0]
+    return float(error**2 / (variance + x @ solve(A, x[:, None])[:, 0]))
+
+
+class Change:
+    """Whether the spring, or friction, has changed. It never has in the runs of the oracle."""
+
+    def __init__(self, sums: "Information", spring: int, friction: slice) -> None:
+        """spring, friction  columns: the number of the first ones, and the others"""
+        self.changed, self.spring, self.friction = deepcopy(sums), spring, friction
+        self.level, self.usual_misfit, self.judged = 1.0, 1.0, 0
+        self.evidence, self.blocks = 0.0, 80
+        self.friction_blocks, self.preference = 0, 0.0
+        self.was_tested = False  # whether other friction has ever been a hypothesis
+        self.before = self.of_spring = self.of_friction = 0.0  # squared errors
+
+    def begin(self, blocks: "Blocks", friction_drifts: bool) -> None:
+        self.changed = deepcopy(blocks.walking if friction_drifts else blocks.all)
+        self.changed.restart(0, self.spring, blocks.prior)
+        self.evidence, self.blocks = 0.0, 0
+
+    def take(self, row: "Long", variance: float, blocks: "Blocks", friction_drifts: bool) -> None:
+        """A block, which the other hypotheses have not taken yet."""
+        before = squared_error(blocks.all, row, variance)
+        self.of_friction = squared_error(blocks.walking, row, variance)
+        self.before = self.of_friction if friction_drifts else before
+        self.of_spring = squared_error(self.changed, row, variance)
+        if self.blocks > 0:
+            self.changed.take(row, 1 / variance)
+        if self.of_spring > 12.5 * self.level and self.evidence <= 50:
+            self.begin(blocks, friction_drifts)
+            self.of_spring = 0.0
+
+    def judge(self, misfit: float, blocks: "Blocks", friction_drifts: bool) -> None:
+        level = self.level
+        self.judged = min(self.judged + 1, 400)
+        if self.friction_blocks > 1:
+            self.preference += min(self.of_friction / level, 50) - min(self.of_spring / level, 50)
+        self.friction_blocks += self.friction_blocks > 0
+        self.level = max(1, level + (min(self.before, 9 * level) - level) / self.judged)
+        most = min(misfit, 1.7 * self.usual_misfit)
+        self.usual_misfit += (most - self.usual_misfit) / self.judged
+        if blocks.count < 40:
+            return
+        self.blocks += 1
+        against = min(self.before / level, max(50 / self.usual_misfit, 25))
+        gain = against - 2 * min(self.of_spring / level, 12.5) - 2
+        self.evidence = max(self.evidence + gain, 0.0)
+        assert self.evidence <= 100 * np.sqrt(level), "a change: the oracle does not follow it"
+        if self.evidence <= 0 or self.blocks >= 80:
+            if self.friction_blocks > 0 and self.preference >= -25:
+                blocks.walking = deepcopy(blocks.all)
+            self.friction_blocks = 0
+            self.begin(blocks, friction_drifts)
+        elif self.evidence > 20 and self.friction_blocks == 0 and not friction_drifts:
+            blocks.walking.restart(self.friction.start, self.friction.stop, blocks.prior)
+            self.friction_blocks, self.preference, self.was_tested = 1, 0.0, True
