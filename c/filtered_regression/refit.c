@@ -1,8 +1,8 @@
 /* Refits: how the misfit, and the choice of columns, act on past samples in bounded time (detail 6). A row of
  * the data with its weight is a sample for another triangle: so a new posterior is computed beside the present
- * one. A step takes a row of the data, beginning with the last; these are short, so that it takes two of them. A new row
- * passes the rows of the data from the first to the last: what those that have not been read leave of it is for the new
- * posterior, too. Every second refit is a trial of a group of columns, and its estimate is not used.
+ * one. A step takes a row of the data, beginning with the last; these are short, so that it takes two of them. A new
+ * row passes the rows of the data from the first to the last: what those that have not been read leave of it is for the
+ * new posterior, too. Every second refit is a trial of a group of columns, and its estimate is not used.
  */
 #include <string.h>
 
@@ -30,7 +30,7 @@ static int place_of(const sh_regression_state *state, const sh_parameters *p, in
         return -1;
     }
     return group != 0 && group == refit->trial  ? 3
-           : column->kind >= SH_COLUMN_LOAD     ? 2
+           : column->kind >= SH_COLUMN_DRIVE    ? 2
            : sh_column_is(column, SH_IS_SPRING) ? 1
                                                 : 0;
 }

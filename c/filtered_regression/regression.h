@@ -60,8 +60,8 @@ enum {
     SH_COLUMN_POSSIBLE_KNEE, /* the same, if nobody knows of a knee */
     SH_COLUMN_SIN_M,         /* motor encoder that is not centred */
     SH_COLUMN_COS_M,
-    SH_COLUMN_LOAD, /* friction that grows with the torque of the spring; what follows stands last */
-    SH_COLUMN_DRIVE,   /* friction that grows with the torque of the motor */
+    SH_COLUMN_LOAD, /* friction that grows with the torque of the spring */
+    SH_COLUMN_DRIVE, /* friction that grows with the torque of the motor; from it on, last in a posterior */
     SH_COLUMN_VISCOUS, /* d */
     SH_COLUMN_COULOMB, /* tau_C */
     SH_COLUMN_INERTIA, /* b: the last column */

@@ -235,8 +235,7 @@ class Oracle:
         self.blocks = Blocks(n, self.w, self.T, self.K)
         self.full = np.zeros(0, np.longdouble), 1.0, 0.0  # mean, variance and count of a full block
         self.q = self.factor = 1.0
-        self.recent_q = 0.0
-        self.surplus = self.spread = self.rounding = 0.0
+        self.surplus = self.spread = self.rounding = self.recent_q = 0.0
         self.of_drive = np.zeros(2)
         self.trial = self.last_trial = 0
         self.since = self.pause = self.epsilon = self.rho = 0.0
@@ -252,18 +251,9 @@ class Oracle:
         self.rough = 0.0
         self.once_used: set[int] = set()  # groups that a trial has shown to be needed
         self.changes = 0  # passes in which the recent data agreed by themselves
-        friction = [i for i, kind in enumerate(self.kinds) if kind in FRICTION]
-        first = friction[0] if friction else 0
-        springs = int(np.count_nonzero(self.of_spring))
-        self.change = Change(self.blocks.recent, springs, slice(first, first + len(friction)))
+        self.change = self.hypotheses()
         self.out: dict[str, list[Any]] = defaultdict(list)
-        pulse = np.concatenate([[0.0], np.full(self.K, 1 / self.K), np.zeros(20000)])
-        response = [through(pulse, order, self.w, self.T) for order in (0, 2)]
-        self.gain, gain_second = (float(np.sum(of**2)) for of in response)
-        # Noise after the filter: of the torque [(N.m)2], of theta by its variance [(N.m/rad)2]
-        self.of_torque = (p["motor.gamma"] * p["noise.tau"]) ** 2
-        self.of_theta = (p["motor.gamma"] ** 2 * p["motor.B"]) ** 2
-        self.torque_noise, self.inertial = self.gain * self.of_torque, gain_second * self.of_theta
+        self.set_noise()
         self.passes = self.make_passes()
         next(self.passes)
 
@@ -273,6 +263,22 @@ class Oracle:
         goes_on[1:-1] = good[:-1] & good[1:] & (np.diff(self.modality) == 0)
         begins, ends = np.flatnonzero(good & ~goes_on[:-1]), np.flatnonzero(good & ~goes_on[1:])
         return [slice(begin, end + 1) for begin, end in zip(begins, ends, strict=True)]
+
+    def set_noise(self) -> None:
+        """After the filter: of the torque [(N.m)2], of theta by its variance [(N.m/rad)2]."""
+        p, K = self.p, self.K
+        pulse = np.concatenate([[0.0], np.full(K, 1 / K), np.zeros(20000)])
+        response = [through(pulse, order, self.w, self.T) for order in (0, 2)]
+        self.gain, gain_second = (float(np.sum(of**2)) for of in response)
+        self.of_torque = (p["motor.gamma"] * p["noise.tau"]) ** 2
+        self.of_theta = (p["motor.gamma"] ** 2 * p["motor.B"]) ** 2
+        self.torque_noise, self.inertial = self.gain * self.of_torque, gain_second * self.of_theta
+
+    def hypotheses(self) -> Change:
+        friction = [i for i, kind in enumerate(self.kinds) if kind in FRICTION]
+        first = friction[0] if friction else 0
+        springs = int(np.count_nonzero(self.of_spring))
+        return Change(self.blocks.recent, springs, slice(first, first + len(friction)))
 
     # Columns of a posterior
 
