@@ -139,7 +139,7 @@ static void watch_level(sh_change *change, sh_real before)
 }
 
 /* g = max(0, g + min(z_0 / l, c) - 2 min(z_1 / l, 12.5) - 2), c = max(50 / m, 25), where z are squares of errors over
- * their variances, l >= 1 is their usual size, and m >= 1 is the usual misfit: a misfit makes both hypotheses wrong all
+ * their variances, l >= 1 is their usual size, and m >= 1 is the usual misfit: a misfit makes all hypotheses wrong all
  * the time.
  */
 void sh_change_judge(sh_regression_state *state, const sh_parameters *p, sh_real before,
