@@ -3,9 +3,9 @@
  *     0  the joint is as before: the prior and all blocks
  *     1  the spring has changed since t: the same at t, but of its columns, which are the first ones, only the
  *        prior is known. What the data say about motor and friction is in the rows behind.
- *     2  friction has changed: the same for its columns, which are the last ones before the inertia
+ *     2  friction has changed: all blocks, but friction has changed by about the deviations of its priors
  *
- * Hypothesis 2 begins when there is evidence against hypothesis 0. It has the blocks of friction that drifts, which are
+ * Hypothesis 2 begins when there is evidence against hypothesis 0, in the blocks in which friction drifts, which are
  * those of hypothesis 0 again if nothing has changed.
  */
 #include "constants.h"
@@ -30,21 +30,45 @@ static void begin(sh_regression_state *state)
     sh_change *change = &state->change;
 
     change->changed = state->friction_drifts ? blocks->drifting : blocks->constant;
-    sh_information_restart(&change->changed, 0, state->columns.spring, blocks->prior);
+    sh_information_restart(&change->changed, state->columns.spring, blocks->prior);
     change->evidence = change->blocks = 0;
 }
 
-/* Hypothesis 2 begins now, if there is friction that does not drift anyway. */
-static void begin_friction(sh_regression_state *state)
+/* Hypothesis 2 begins now, if there is friction that does not drift anyway. A sample of this drift that waits is of the
+ * blocks as they were.
+ */
+static void begin_friction(sh_regression_state *state, const sh_parameters *p)
 {
-    const sh_columns *columns = &state->columns;
+    sh_change *change = &state->change;
 
-    if (columns->friction < columns->inertia && !state->friction_drifts) {
-        sh_information_restart(&state->blocks.drifting, columns->friction, columns->inertia,
-                               state->blocks.prior);
-        state->change.friction_blocks = 1;
-        state->change.preference = 0;
+    if (state->columns.friction < state->columns.inertia && !state->friction_drifts &&
+        !sh_is_measured(p)) {
+        change->friction_blocks = 1;
+        change->preference = 0;
+        change->widened = state->columns.friction;
+        state->refit.w = 0;
     }
+}
+
+/* Process noise of 1, the variance of the prior, for one column a row: step 0 sets its sample, step 1 takes it. */
+int sh_change_widens_friction(sh_regression_state *state, int step)
+{
+    sh_information *const blocks = &state->blocks.drifting;
+    sh_change *change = &state->change;
+    sh_refit *refit = &state->refit;
+
+    if (!(change->friction_blocks > 0) || change->widened >= state->columns.inertia) {
+        return 0;
+    }
+    if (step == 0) {
+        refit->w = sh_information_drift_sample(blocks, change->widened, 1, refit->x);
+        change->widened += refit->w < 0 ? 0 : 1; /* nothing is known about it */
+    } else if (step == 1 && refit->w < 0) {
+        (void)sh_information_take(blocks, refit->x, refit->w);
+        refit->w = 0;
+        change->widened += 1;
+    }
+    return 1;
 }
 
 /* Nothing has changed. Blocks that other friction explains clearly better may still show that it drifts. */
@@ -119,12 +143,13 @@ static void watch_misfit(sh_change *change, sh_real misfit)
     change->usual_misfit += (sh_fmin(misfit, SH_SUDDEN_MISFIT * usual) - usual) / change->judged;
 }
 
-/* h += min(z_2 / l, 50) - min(z_1 / l, 50), but not in the first block of hypothesis 2 */
-static void compare_with_friction(sh_change *change, sh_real spring, sh_real friction)
+/* h += min(z_2 / l, 50) - min(z_1 / l, 50), but not in the first block of either hypothesis */
+static void compare_with_friction(sh_change *change, sh_real level, sh_real spring,
+                                  sh_real friction)
 {
-    if (change->friction_blocks > 1) {
-        change->preference += sh_fmin(friction / change->level, SH_LARGEST_EVIDENCE) -
-                              sh_fmin(spring / change->level, SH_LARGEST_EVIDENCE);
+    if (change->friction_blocks > 1 && change->blocks > 0) {
+        change->preference += sh_fmin(friction / level, SH_LARGEST_EVIDENCE) -
+                              sh_fmin(spring / level, SH_LARGEST_EVIDENCE);
     }
     change->friction_blocks += change->friction_blocks > 0 ? 1 : 0;
 }
@@ -150,15 +175,17 @@ void sh_change_judge(sh_regression_state *state, const sh_parameters *p, sh_real
     sh_real most;
 
     if (!(p->regression.memory > 0)) { /* switched off */
+        end_friction(state);
+        change->evidence = 0;
         return;
     }
     change->judged = sh_fmin(change->judged + 1, SH_LEVEL_BLOCKS);
-    compare_with_friction(change, spring, friction);
     watch_level(change, before);
     watch_misfit(change, sh_sqrt(state->misfit));
     if (state->blocks.count < SH_SHORTEST_PAST) {
         return;
     }
+    compare_with_friction(change, level, spring, friction);
     most = sh_fmax(SH_LARGEST_EVIDENCE / change->usual_misfit, SH_LEAST_LIMIT_OF_EVIDENCE);
     change->blocks += 1;
     change->evidence = sh_fmax(change->evidence + sh_fmin(before / level, most) -
@@ -169,7 +196,7 @@ void sh_change_judge(sh_regression_state *state, const sh_parameters *p, sh_real
         begin(state);
     } else if (change->following == 0 && change->evidence > SH_MAY_HAVE_CHANGED) {
         if (!(change->friction_blocks > 0)) {
-            begin_friction(state);
+            begin_friction(state, p);
         }
         if (change->evidence > SH_HAS_CHANGED * sh_sqrt(level)) {
             decide(state, p);

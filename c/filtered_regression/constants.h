@@ -97,7 +97,7 @@
 #define SH_DRIFT_BEGINS ((sh_real)0.8)
 #define SH_DRIFT_ENDS ((sh_real)0.95)
 
-/* ---- change of the spring, change.c ------------------------------------------------------ */
+/* ---- change of spring or friction, change.c ---------------------------------------------- */
 
 /* Evidence above which the estimate is in doubt, and, times the root of its usual error, something has changed [1].
  * Without a change, none of 3860 runs of 22 s with every misfit reported one; with 60, one of 1930.
@@ -139,9 +139,9 @@
  * hardly change. No simple ratio of blocks and rows, so that no rounding error decides.
  */
 #define SH_REFIT_PAUSE ((sh_real)0.0101)
-/* Duration of a row for each step that a refit makes in a step of the row [s], and most of these steps [1]: one at
- * 1 kHz. With one at 250 Hz, too, a wrong choice of columns would last for 0.8 s. There are fewer than samples in a
- * row.
+/* Duration of a row for each step that a refit makes in a step of the row [s], and most of these steps [1]: one in rows
+ * below 13 ms, four from 26 ms on. With one there, too, a wrong choice of columns would last for 0.8 s at 250 Hz. There
+ * are fewer than samples in a row.
  */
 #define SH_TIME_OF_STEP ((sh_real)0.0065)
 #define SH_MOST_STEPS 4

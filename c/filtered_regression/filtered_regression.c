@@ -400,13 +400,18 @@ static int advance_block(sh_regression_state *state, const sh_parameters *p, int
         sh_blocks_take(state);
     }
     sh_blocks_end(state, p, step);
-    for (i = 0; i < steps && !was_full && !is_block_full(&state->blocks); ++i) {
+    if (was_full || is_block_full(&state->blocks) || sh_change_widens_friction(state, step)) {
+        return 0;
+    }
+    for (i = 0; i < steps; ++i) {
         news |= sh_refit_advance(state, p);
     }
     return news;
 }
 
-/* What else a row changes: step 0 to 6, at most one triangular matrix each. Returns SH_NEW_*. */
+/* What else a row changes: step 0 to 6, at most one triangular matrix each, but up to four where a refit goes on in
+ * long rows, and copies where a change is adopted. Returns SH_NEW_*.
+ */
 static int take_step(sh_regression_state *state, const sh_parameters *p, int step)
 {
     if (step == 0) {

@@ -94,7 +94,8 @@ static int are_numbers(const sh_regression_state *state)
         state->row.tick < 0 || state->row.tick > SH_LARGEST_DECIMATION ||
         state->signals.begun < 0 || state->signals.begun > 1 || state->friction_drifts < 0 ||
         state->friction_drifts > 1 || state->stiffness_known < 0 || state->stiffness_known > 1 ||
-        state->change.following < 0 || state->change.following > 1) {
+        state->change.following < 0 || state->change.following > 1 || state->change.widened < 0 ||
+        state->change.widened > SH_MAX_COLUMNS) {
         return 0;
     }
     return 1;

@@ -47,23 +47,17 @@ void sh_information_start(sh_information *a, int size, sh_real precision)
 {
     a->size = size;
     a->squares = 0;
-    sh_information_restart(a, 0, size, precision);
+    sh_information_restart(a, size, precision);
 }
 
-void sh_information_restart(sh_information *a, int first, int end, sh_real precision)
+void sh_information_restart(sh_information *a, int count, sh_real precision)
 {
-    const int size = a->size, begin = first < size ? first : size, rows = end < size ? end : size;
-    sh_real *row = a->U + row_offset(size, begin);
-    int i, k;
+    const int rows = count < a->size ? count : a->size;
+    int i;
 
-    for (i = begin; i < rows; ++i) {
-        const int count = size - 1 - i + SH_RIGHT_SIDES;
-
+    (void)memset(a->U, 0, sizeof(sh_real) * (size_t)row_offset(a->size, rows));
+    for (i = 0; i < rows; ++i) {
         a->D[i] = precision;
-        for (k = 0; k < count; ++k) {
-            row[k] = 0;
-        }
-        row += count;
     }
 }
 

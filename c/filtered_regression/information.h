@@ -19,11 +19,12 @@
  */
 void sh_information_start(sh_information *a, int size, sh_real precision);
 
-/* Starts again with the parameters first..end - 1: they get the estimate 0 and the precision. What the samples say
- * about the parameters behind, if these and those before are not known, stays, and so does what they say about those
- * before if all others are known. Numbers behind the last parameter count as the number of parameters.
+/* Starts again with the first parameters: they get the estimate 0 and the precision. What the samples say about
+ * the others, if the first ones are not known, stays.
+ *
+ * count  number of first parameters, >= 0; all of them if it is larger than size
  */
-void sh_information_restart(sh_information *a, int first, int end, sh_real precision);
+void sh_information_restart(sh_information *a, int count, sh_real precision);
 
 /* Takes a sample.
  *

@@ -271,6 +271,11 @@ int sh_change_begins_anew(sh_regression_state *state, sh_real error);
 void sh_change_judge(sh_regression_state *state, const sh_parameters *p, sh_real before,
                      sh_real spring, sh_real friction);
 
+/* Step 0..2 behind a row in which no block is taken: lets friction be another one, if this is a hypothesis that has
+ * just begun. Returns 0 if there is nothing to do.
+ */
+int sh_change_widens_friction(sh_regression_state *state, int step);
+
 /* The misfit over its usual value [1]. */
 sh_real sh_change_misfit(const sh_regression_state *state);
 

@@ -92,7 +92,7 @@ enum {
     SH_DOUBT_FRICTION,           /* D_theta_hat is far from its prior, or below 0 */
     SH_DOUBT_INERTIA,            /* B_hat is beyond three std deviations of its prior */
     SH_DOUBT_NEGATIVE_STIFFNESS, /* sigma is below 0 */
-    SH_DOUBT_CHANGE /* the stiffness may have changed, and the estimate does not follow yet */
+    SH_DOUBT_CHANGE /* stiffness or friction may have changed, the estimate does not follow yet */
 };
 
 /* Largest orders of the polynomials (18) and (19), in the deformation and in the set-point. They

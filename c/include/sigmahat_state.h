@@ -251,7 +251,7 @@ typedef struct {
     sh_real rounding;    /* sum of mean squares of the rounding of theta [rad2] */
 } sh_blocks;
 
-/* Whether the spring has changed, change.c. */
+/* Whether the spring or friction has changed, change.c. */
 typedef struct {
     sh_information changed; /* of blocks, if the spring has changed since this hypothesis began */
     int following;          /* 1: a change was detected, and the estimate does not contain it yet */
@@ -260,11 +260,11 @@ typedef struct {
         judged; /* mean square of a block's error over its variance, and of how many blocks */
     sh_real usual_misfit; /* of the estimate, the mean over as many blocks [1] */
     sh_real evidence;     /* of the change [1] */
-    sh_real
-        friction_blocks; /* since the hypothesis of other friction began, in blocks.drifting; 0: it has not */
-    sh_real
-        preference; /* for another spring over other friction, by the squares of their errors [1] */
-    /* Of the last block with another spring, and with other friction: squares over their variances [1] */
+    /* Blocks since the hypothesis of other friction began, in blocks.drifting; 0: it has not. */
+    sh_real friction_blocks;
+    int widened;        /* next column of friction that gets the variance of its prior */
+    sh_real preference; /* for another spring over other friction, by the squares of their errors */
+    /* Of the last block with another spring, and with other friction: squares over variances. */
     sh_real error, friction_error;
 } sh_change;
 

@@ -58,7 +58,7 @@ INTEGERS_OF_FILTERED_REGRESSION = [
     *("columns.column.j", "refit.unread", "refit.step", "refit.trial", "refit.last_trial"),
     "refit.used",
     *("blocks.constant.size", "blocks.drifting.size", "blocks.recent.size"),
-    *("change.changed.size", "change.following"),
+    *("change.changed.size", "change.following", "change.widened"),
     *("signals.decimation", "mean.samples", "row.tick"),
     *("posterior.information.size", "posterior.column"),
     *("refit.posterior.information.size", "refit.posterior.column"),

@@ -28,6 +28,7 @@ class Change:
         self.level, self.usual_misfit, self.judged = 1.0, 1.0, 0
         self.evidence, self.blocks = 0.0, 80
         self.friction_blocks, self.preference = 0, 0.0
+        self.left = 0  # columns of friction that do not have the variance of their prior yet
         self.was_tested = False  # whether other friction has ever been a hypothesis
         self.before = self.of_spring = self.of_friction = 0.0  # squared errors
 
@@ -48,27 +49,33 @@ class Change:
             self.begin(blocks, friction_drifts)
             self.of_spring = 0.0
 
-    def judge(self, misfit: float, blocks: "Blocks", friction_drifts: bool) -> None:
+    def judge(self, misfit: float, blocks: "Blocks", friction_drifts: bool, measured: bool) -> bool:
+        """Returns whether the hypothesis of other friction begins."""
         level = self.level
         self.judged = min(self.judged + 1, 400)
-        if self.friction_blocks > 1:
-            self.preference += min(self.of_friction / level, 50) - min(self.of_spring / level, 50)
-        self.friction_blocks += self.friction_blocks > 0
         self.level = max(1, level + (min(self.before, 9 * level) - level) / self.judged)
         most = min(misfit, 1.7 * self.usual_misfit)
         self.usual_misfit += (most - self.usual_misfit) / self.judged
         if blocks.count < 40:
-            return
+            return False
+        if self.friction_blocks > 1 and self.blocks > 0:
+            self.preference += min(self.of_friction / level, 50) - min(self.of_spring / level, 50)
+        self.friction_blocks += self.friction_blocks > 0
         self.blocks += 1
         against = min(self.before / level, max(50 / self.usual_misfit, 25))
         gain = against - 2 * min(self.of_spring / level, 12.5) - 2
         self.evidence = max(self.evidence + gain, 0.0)
-        assert self.evidence <= 100 * np.sqrt(level), "a change: the oracle does not follow it"
+        assert self.evidence <= 75 * np.sqrt(level), "a change: the oracle does not follow it"
         if self.evidence <= 0 or self.blocks >= 80:
             if self.friction_blocks > 0 and self.preference >= -25:
                 blocks.walking = deepcopy(blocks.all)
-            self.friction_blocks = 0
+            self.friction_blocks = self.left = 0
             self.begin(blocks, friction_drifts)
-        elif self.evidence > 20 and self.friction_blocks == 0 and not friction_drifts:
-            blocks.walking.restart(self.friction.start, self.friction.stop, blocks.prior)
+        elif self.evidence > 20 and self.friction_blocks == 0 and not (friction_drifts or measured):
+            columns = range(self.friction.start, self.friction.stop)
+            for unit in np.eye(blocks.walking.size)[columns]:
+                blocks.walking.walk(unit.astype(np.longdouble), 1.0)
             self.friction_blocks, self.preference, self.was_tested = 1, 0.0, True
+            self.left = len(columns)
+            return True
+        return False

@@ -275,6 +275,8 @@ class Oracle:
         self.torque_noise, self.inertial = self.gain * self.of_torque, gain_second * self.of_theta
 
     def hypotheses(self) -> Change:
+        self.waiting: tuple[Long, float] | None = None  # process noise of friction
+        self.is_sampled = False  # the first half of a step of the hypothesis of other friction
         friction = [i for i, kind in enumerate(self.kinds) if kind in FRICTION]
         first = friction[0] if friction else 0
         springs = int(np.count_nonzero(self.of_spring))
@@ -420,13 +422,13 @@ class Oracle:
         blocks, N = self.blocks, self.blocks.count
         kind = ("VISCOUS", "COULOMB")[step % 2]
         sums = blocks.walking if step < 2 else self.data
-        does_drift = kind in self.kinds and (step < 2 or self.friction_drifts)
-        if does_drift:
+        self.waiting = None
+        if kind in self.kinds and (step < 2 or self.friction_drifts):
             v = identity(self.n)[self.kinds.index(kind)]
-            sample = sums.walk_sample(v, 1e-3 * time)
+            self.waiting = sums.walk_sample(v, 1e-3 * time)
         yield
-        if does_drift:
-            sums.take(*sample)
+        if self.waiting is not None:
+            sums.take(*self.waiting)
         if step == 1 and 2 * self.n < N and self.change.friction_blocks == 0:
             constant, walking = blocks.all.rest, blocks.walking.rest
             if walking < 0.8 * constant and constant > (N - self.n) * threshold(N) / N:
@@ -547,28 +549,33 @@ class Oracle:
         blocks = self.blocks
         was_full = len(blocks.rows) == blocks.length
         if was_full:
-            self.end_block(*self.full)
+            self.end_block(*self.full, measured)
         blocks.rows.append((row, 1 / R, last, rough))
         is_full = len(blocks.rows) == blocks.length
         if is_full:
             self.full = mean, variance, _ = self.full_block(measured)
             self.change.take(mean, variance, blocks, self.friction_drifts)
         elif not was_full:
-            self.pass_on()
+            self.pass_on(0)
         yield
-        for sums in (blocks.all, blocks.walking):
+        for step, sums in enumerate((blocks.all, blocks.walking), 1):
             if is_full:
                 sums.take(mean, 1 / variance)
             else:
-                self.pass_on()
+                self.pass_on(step)
             yield
 
-    def pass_on(self) -> None:
+    def pass_on(self, step: int) -> None:
+        """Not while friction gets the variances of its priors: a column in each row."""
+        if self.change.left > 0:
+            self.change.left -= step == 1 and self.is_sampled
+            self.is_sampled = step == 0
+            return
         by_time = min(self.K * self.T / 0.0065, self.K - 1, 4)
         for _ in range(int(max(by_time, 1))):
             next(self.passes)
 
-    def end_block(self, mean: Long, variance: float, count: float) -> None:
+    def end_block(self, mean: Long, variance: float, count: float, measured: bool) -> None:
         """After the row behind the block."""
         blocks = self.blocks
         blocks.recent.take(mean, 1 / variance)
@@ -576,7 +583,9 @@ class Oracle:
         blocks.recent_count += count
         blocks.gained += count * blocks.length * self.K * self.T
         if self.p["regression.memory"] > 0:
-            self.change.judge(math.sqrt(max(1.0, self.q)), blocks, self.friction_drifts)
+            misfit = math.sqrt(max(1.0, self.q))
+            if self.change.judge(misfit, blocks, self.friction_drifts, measured):
+                self.waiting = None  # a sample of the sums as they were
         blocks.rows.clear()
 
     def follow(self) -> None:

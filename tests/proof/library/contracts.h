@@ -50,10 +50,10 @@ sh_real sh_information_predict(const sh_information *a, sh_real *x, sh_real w);
 void sh_information_start(sh_information *a, int size, sh_real precision);
 
 /*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
-    requires 0 <= first && 0 <= end;
-    assigns a->D[0 .. SH_MAX_COLUMNS - 1], a->U[0 .. SH_MAX_TRIANGLE - 1] \from *a, first, end, precision;
+    requires 0 <= count <= SH_MAX_COLUMNS;
+    assigns a->D[0 .. SH_MAX_COLUMNS - 1], a->U[0 .. SH_MAX_TRIANGLE - 1] \from *a, count, precision;
 */
-void sh_information_restart(sh_information *a, int first, int end, sh_real precision);
+void sh_information_restart(sh_information *a, int count, sh_real precision);
 
 /*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
     requires 0 <= i < SH_MAX_COLUMNS;

@@ -63,8 +63,7 @@ void rows(void)
         for (i = 0; i < SH_MAX_COLUMNS; ++i) {
             sh_information_sample(&a, i, x);
             sh_information_drift_sample(&a, i, any_real(), x);
-            sh_information_restart(&a, 0, i + 1, any_real());
-            sh_information_restart(&a, i, SH_MAX_COLUMNS, any_real());
+            sh_information_restart(&a, i + 1, any_real());
             sh_information_take_rows(&a, 0, i + 1, x, any_real());
             sh_information_take_rows(&a, i + 1, SH_MAX_COLUMNS, x, any_real());
         }
