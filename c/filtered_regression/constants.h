@@ -100,7 +100,7 @@
 /* ---- change of spring or friction, change.c ---------------------------------------------- */
 
 /* Evidence above which the estimate is in doubt, and, times the root of its usual error, something has changed [1].
- * Without a change, none of 3860 runs of 22 s with every misfit reported one; with 60, one of 1930.
+ * Without a change, one of 3860 runs of 22 s with every misfit reported one; with 60, one of 1930.
  */
 #define SH_MAY_HAVE_CHANGED ((sh_real)20)
 #define SH_HAS_CHANGED ((sh_real)75)
