@@ -26,7 +26,7 @@ void sh_change_start(sh_regression_state *state)
  */
 static void begin(sh_regression_state *state)
 {
-    sh_blocks *blocks = &state->blocks;
+    const sh_blocks *blocks = &state->blocks;
     sh_change *change = &state->change;
 
     change->changed = state->friction_drifts ? blocks->drifting : blocks->constant;

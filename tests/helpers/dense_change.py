@@ -34,7 +34,7 @@ class Change:
 
     def begin(self, blocks: "Blocks", friction_drifts: bool) -> None:
         self.changed = deepcopy(blocks.walking if friction_drifts else blocks.all)
-        self.changed.restart(0, self.spring, blocks.prior)
+        self.changed.restart(self.spring, blocks.prior)
         self.evidence, self.blocks = 0.0, 0
 
     def take(self, row: "Long", variance: float, blocks: "Blocks", friction_drifts: bool) -> None:

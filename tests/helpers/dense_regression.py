@@ -87,11 +87,11 @@ class Information:
         self.matrix = (rows.T * np.maximum(D * keep, self.least)) @ rows
         self.matrix[-1, -1] += rest * keep
 
-    def restart(self, first: int, end: int, precision: float) -> None:
-        """Parameters of which only this precision is known, if all behind them are known."""
+    def restart(self, count: int, precision: float) -> None:
+        """Of the first parameters, only this precision is known."""
         rows, D, rest = self.factors()
-        rows[first:end] = np.eye(self.size, len(self.matrix))[first:end]
-        D[first:end] = precision
+        rows[:count] = np.eye(self.size, len(self.matrix))[:count]
+        D[:count] = precision
         self.matrix = (rows.T * D) @ rows
         self.matrix[-1, -1] += rest
 
