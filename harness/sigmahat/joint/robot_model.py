@@ -41,53 +41,16 @@ class Spring:
     error: float  # largest error of this torque over the largest torque in the data [1]
 
 
-@dataclass(frozen=True)
-class TwoHinges:
-    """Data of a joint for a simulator; parameters at the gear output."""
-
-    gear_ratio: float
-    rotor_inertia: float  # inertia of the motor on its own axis [kg.m2]
-    armature: Parameter  # inertia of the motor
-    damping: Parameter  # viscous friction of the motor
-    frictionloss: Parameter  # Coulomb friction of the motor
-    spring: Spring
-    spring_damping: Parameter
-    reach: Range  # range of the measured deformation [rad]
-    factor: Parameter  # of the whole stiffness: 1, with the relative interval
-    absent: tuple[str, ...]  # effects of the joint that two hinges do not have, in words
-
-    def parameters(self, name: str) -> Iterator[tuple[str, Parameter]]:
-        """Parameters that may have an interval, by the name of hinge and parameter."""
-        yield f"{name}_motor.armature", self.armature
-        yield f"{name}_motor.damping", self.damping
-        yield f"{name}_motor.frictionloss", self.frictionloss
-        yield f"{name}_flexibility.damping", self.spring_damping
-        yield f"{name}_flexibility.stiffness.factor", self.factor
-
-
-def two_hinges(sheet: Sheet, degree: int) -> TwoHinges:
-    """The hinges of a joint, whose spring is a polynomial of at most this degree.
-
-    The curve at the last set-point of the log is the spring.
-
-    Raises ValueError for a sheet without data or without a stiffness above 0.
-    """
-    p, reach = sheet.parameters, sheet.polynomial.phi
-    if reach is None:
-        raise ValueError("no deformation in the sheet: expected the sheet of a joint that moved")
-    gamma = p["gamma"].value
-    return TwoHinges(
-        gear_ratio=gamma,
-        rotor_inertia=max(p["B"].value, 0.0),
-        armature=_scaled(p["B"], gamma**2, "kg.m2"),
-        damping=_scaled(p["D_theta"], gamma**2, "N.m.s/rad"),
-        frictionloss=_scaled(p.get("tau_coulomb"), abs(gamma), "N.m"),
-        spring=_spring(sheet, reach, degree),
-        spring_damping=_scaled(p.get("damping"), 1.0, "N.m.s/rad"),
-        reach=reach,
-        factor=_factor(sheet),
-        absent=tuple(_absent(sheet, reach)),
-    )
+def _parameters(sheet: Sheet) -> dict[str, Parameter]:
+    """Parameters at the gear output that may have an interval, by hinge and parameter."""
+    p, gamma = sheet.parameters, sheet.parameters["gamma"].value
+    return {
+        "motor.armature": _scaled(p["B"], gamma**2, "kg.m2"),
+        "motor.damping": _scaled(p["D_theta"], gamma**2, "N.m.s/rad"),
+        "motor.frictionloss": _scaled(p.get("tau_coulomb"), abs(gamma), "N.m"),
+        "flexibility.damping": _scaled(p.get("damping"), 1.0, "N.m.s/rad"),
+        "flexibility.stiffness.factor": _factor(sheet),
+    }
 
 
 def _scaled(parameter: Parameter | None, factor: float, unit: str) -> Parameter:
@@ -137,9 +100,7 @@ def _spring(sheet: Sheet, reach: Range, degree: int) -> Spring:
     fitted = Polynomial(coefficients)
     reference = _zero(fitted, phi)
     shifted = fitted(Polynomial([reference, 1.0])).coef
-    stiffness = [float(each) for each in np.append(shifted, np.zeros(degree))[1 : degree + 1]]
-    while len(stiffness) > 1 and not stiffness[-1]:
-        del stiffness[-1]
+    stiffness = np.trim_zeros(shifted[1:], "b").tolist() or [0.0]
     if not stiffness[0] > 0:
         raise ValueError(
             f"the stiffness is {stiffness[0]:.4g} N.m/rad where the spring has no torque: expected "
@@ -179,40 +140,51 @@ def _absent(sheet: Sheet, reach: Range) -> Iterator[str]:
 def write_model(sheet: Sheet, kind: str, path: Path) -> None:
     """Writes the joint of a sheet as a model: mjcf, sdf, urdf or drake.
 
-    Raises ValueError for a sheet that shows no stiffness.
+    The curve at the last set-point of the log is the spring.
+
+    Raises ValueError for a sheet without data or without a stiffness above 0.
     """
+    reach = sheet.polynomial.phi
+    if reach is None:
+        raise ValueError("no deformation in the sheet: expected the sheet of a joint that moved")
     name = one_line(path.name.partition(".")[0]).replace(" ", "_")
-    hinges = two_hinges(sheet, degree=3 if kind == "mjcf" else 1)
+    parameters = _parameters(sheet)
+    spring = _spring(sheet, reach, degree=3 if kind == "mjcf" else 1)
     template = "sdf" if kind == "drake" else kind
     model = (
         environment(Path(__file__).parent / "templates")
         .get_template(f"{template}.xml")
         .render(
             name=name,
-            hinges=hinges,
-            spring=hinges.spring,
+            parameters=parameters,
+            gear_ratio=sheet.parameters["gamma"].value,
+            rotor_inertia=max(sheet.parameters["B"].value, 0.0),
+            spring=spring,
             rotor=_ROTOR,
-            inertia=max(hinges.armature.value, _ROTOR),
+            inertia=max(parameters["motor.armature"].value, _ROTOR),
             drake=kind == "drake",
         )
     )
-    lines = [line for line in (*_head(hinges, name), _MISSING[kind], *origin(sheet)) if line]
-    comments = [f"<!-- {line} -->" for line in lines]
+    lines = [f"{name}_motor: the motor at its gear output; {name}_flexibility: the deformation."]
+    lines += [f"{name}_{key} = {_with_claim(each)}" for key, each in parameters.items()]
+    lines += [*_limits(sheet, spring, reach), _MISSING[kind], *origin(sheet)]
+    comments = [f"<!-- {line} -->" for line in lines if line]
     write_whole("\n".join(['<?xml version="1.0"?>', *comments, model, ""]), path)
 
 
-def _head(hinges: TwoHinges, name: str) -> Iterator[str]:
-    """Lines about the meaning of the numbers."""
-    yield f"{name}_motor: the motor at its gear output; {name}_flexibility: the deformation."
-    for title, each in hinges.parameters(name):
-        claim = f"no interval ({each.interval_from})"
-        if each.interval is not None:
-            claim = f"95 % from {each.interval[0]:.6g} to {each.interval[1]:.6g}"
-            claim += f" ({each.interval_from})"
-        yield f"{title} = {each.value:.6g} {each.unit}, {claim}"
-    spring, (low, high) = hinges.spring, hinges.reach
+def _with_claim(parameter: Parameter) -> str:
+    claim = f"no interval ({parameter.interval_from})"
+    if parameter.interval is not None:
+        low, high = parameter.interval
+        claim = f"95 % from {low:.6g} to {high:.6g} ({parameter.interval_from})"
+    return f"{parameter.value:.6g} {parameter.unit}, {claim}"
+
+
+def _limits(sheet: Sheet, spring: Spring, reach: Range) -> Iterator[str]:
+    """Lines about what the model does not show of the joint."""
+    low, high = reach
     yield f"The data have deformations from {low:.4g} to {high:.4g} rad; outside is a guess."
     if spring.error > _EXACT:
         yield f"This spring differs from the data by up to {100 * spring.error:.2g} %."
-    if hinges.absent:
-        yield f"Not in this model: {', '.join(hinges.absent)}."
+    if absent := list(_absent(sheet, reach)):
+        yield f"Not in this model: {', '.join(absent)}."
