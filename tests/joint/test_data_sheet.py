@@ -11,6 +11,7 @@ from typing import Any
 import fmpy
 import numpy as np
 import pytest
+import rumoca
 from fmpy.ssp.ssd import read_ssv
 
 import sigmahat
@@ -212,35 +213,15 @@ def from_matlab(path: Path) -> Values:
 
 
 def from_modelica(path: Path) -> Values:
-    """Of a Modelica record with records in it."""
-    found: Values = {}
-    inside: list[tuple[str, Values]] = []
-    named = r"parameter (Real|Integer|Boolean) (\w+)(?:\[(\d+), (\d+)\])?(\(unit=\"[^\"]+\"\))?"
-    for line in path.read_text().splitlines():
-        text = line.strip()
-        if text.startswith("//"):
-            continue
-        if match := re.fullmatch(r"record (\w+)(?: \"[^\"]*\")?", text):
-            inside.append((match[1], {}))
-        elif match := re.fullmatch(r"end (\w+);", text):
-            name, members = inside.pop()
-            assert match[1] == name
-            (inside[-1][1] if inside else found)[f"record {name}"] = members
-        elif match := re.fullmatch(named + r' = (.*?) "(?:[^"\\]|\\.)*";', text):
-            inside[-1][1][match[2]] = literal(match[6])
-            if match[3]:
-                assert np.shape(inside[-1][1][match[2]]) == (int(match[3]), int(match[4]))
-        else:
-            match = re.fullmatch(r"(\w+) ('?)(\w+)\2;", text)
-            assert match, text
-            assert (match[2] == "'") == (match[3] in MODELICA)
-            for name, value in inside[-1][1].pop(f"record {match[1]}").items():
-                inside[-1][1][f"{match[3]}.{name}"] = value
-    assert not inside
-    return with_curve(found[f"record {path.stem}"])
-
-
-MODELICA = {"model", "record", "parameter", "input", "output", "block", "type", "end", "initial"}
+    """Of a Modelica record, as a compiler reads it; but it does not say what a matrix holds."""
+    text = path.read_text()
+    model = rumoca.Session().loads(f"{text}model M {path.stem} own; end M;", model="M")
+    values = {name: model.parameters[name] for name in model.parameters.names}
+    curve = literal(re.findall(r"eta_0\[\d+, \d+\] = (\[.*\])", text)[0])
+    assert list(np.shape(curve)) == values["own.rls.eta_0"].dims
+    names = {name: name.removeprefix("own.").replace("'model'", "model") for name in values}
+    found = {names[name]: each.value for name, each in values.items()}
+    return with_curve({**found, "rls.eta_0": curve})
 
 
 def literal(text: str) -> Any:
