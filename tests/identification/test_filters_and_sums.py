@@ -118,7 +118,7 @@ def test_the_interval_of_the_inertia_holds_it(f_0: float, noise: float) -> None:
         assert _apart([piece], COUNT) == 5
         for apart in held:
             form = Form(min(f_0, 0.25 / (apart * T)), min(2.5 * f_0, 0.1 / (apart * T)))
-            found = fit(equations([piece.every(apart)], apart * T, GEAR, form))
+            found = fit(equations([piece[::apart]], apart * T, GEAR, form))
             held[apart] += abs(found.value["B"] - B) <= found.half_width["B"]
     assert held[5] >= 9
     assert held[1] <= 2

@@ -58,13 +58,10 @@ class Signals:
     """More regressors, [size: samples x columns]. They are filtered as the torque is, and are their
     own instruments."""
 
-    def every(self, number: int) -> Signals:
-        """Every so many samples alone."""
-        return _part(self, slice(None, None, number))
-
-    def up_to(self, number: int) -> Signals:
-        """The first so many samples."""
-        return _part(self, slice(None, number))
+    def __getitem__(self, kept: slice) -> Signals:
+        """Some of the samples."""
+        signals = {each.name: getattr(self, each.name) for each in fields(self)}
+        return replace(self, **{name: x[kept] for name, x in signals.items() if x is not None})
 
 
 class Stribeck(NamedTuple):
@@ -205,9 +202,13 @@ def rows(
     step = max(1, _WINDOW // long) * long
     for begin in range(0, count - edge, step):
         first, last = max(begin - around, 0), min(begin + step + around, count)
-        part = _part(piece, slice(2 * first, 2 * last))
+        part = piece[2 * first : 2 * last]
         velocity = _first(low_pass(part.theta, form.wide, T), T)
-        halves = [_half(part, velocity, half, 2 * T, gamma, form, units) for half in (0, 1)]
+        direction = _direction(velocity, form.coulomb_velocity)
+        halves = [
+            _half(part[half::2], velocity[half::2], direction[half::2], 2 * T, gamma, form, units)
+            for half in (0, 1)
+        ]
         y, X = (np.stack(each) for each in zip(*halves, strict=True))
         Z = np.empty_like(X)
         Z[0, 1:], Z[0, 0] = (X[1, 1:] + X[1, :-1]) / 2, X[1, 0]  # at the times of half 0
@@ -223,11 +224,6 @@ def rows(
 def _block(T: float) -> int:
     """Rows of each half in a block."""
     return round(_BLOCK / (2 * T))
-
-
-def _part(piece: Signals, kept: slice) -> Signals:
-    signals = {each.name: getattr(piece, each.name) for each in fields(piece)}
-    return replace(piece, **{name: x[kept] for name, x in signals.items() if x is not None})
 
 
 def _in_blocks(values: Array, place: NDArray[np.intp], T: float) -> Array:
@@ -292,40 +288,38 @@ def signals_of(
 def _half(
     s: Signals,
     velocity: Array,
-    first: int,
+    friction: Array,
     h: float,
     gamma: float,
     form: Form,
     units: tuple[float, float],
 ) -> tuple[Array, Array]:
-    """Response and regressors of every second sample, h [s] apart, from a first one on.
+    """Response and regressors of samples h [s] apart.
 
-    velocity  of theta at all samples [rad/s]
+    velocity  of theta [rad/s]
+    friction  its direction, from _direction()
     """
-    kept = slice(first, None, 2)
-    theta, tau = s.theta[kept], s.tau[kept]
-    sensor = s.tau_e is not None
-    speed, friction = np.abs(velocity[kept]), _direction(velocity, form.coulomb_velocity)[kept]
-    raw = [tau if s.tau_e is None else s.tau_e[kept] / gamma, friction]
+    sensor, speed = s.tau_e is not None, np.abs(velocity)
+    raw = [s.tau if s.tau_e is None else s.tau_e / gamma, friction]
     if form.load_friction:
-        raw.append(np.abs(s.phi[kept] if s.tau_e is None else s.tau_e[kept]) * friction)
+        raw.append(np.abs(s.phi if s.tau_e is None else s.tau_e) * friction)
     raw += [np.exp(-((speed / v) ** delta)) * friction for v, delta in form.stribeck]
     if form.delay:
-        raw.append(np.gradient(tau, h))
+        raw.append(np.gradient(s.tau, h))
     if CONSTANT in form.names(sensor):
-        raw.append(np.ones_like(tau))
+        raw.append(np.ones_like(s.tau))
     if sensor:  # tau_e/gamma = B gamma theta'' + ... - gain tau
-        raw.append(-tau)
+        raw.append(-s.tau)
     else:
-        x, y = s.phi[kept] / units[0], s.set_point[kept] / units[1]
+        x, y = s.phi / units[0], s.set_point / units[1]
         powers = powers_of_phi(form.symmetric, form.n)
         of_x = np.vander(x, powers[-1] + 1, increasing=True)[:, powers]
         of_y = np.vander(y, form.m, increasing=True)
         raw += [a * b for a in of_x.T for b in of_y.T]
     if s.extra is not None:
-        raw += list(s.extra[kept].T)
+        raw += list(s.extra.T)
     filtered = low_pass(np.column_stack(raw), form.f_0, h)
-    smooth = low_pass(theta, form.f_0, h)
+    smooth = low_pass(s.theta, form.f_0, h)
     motion = [gamma * _second(smooth, h), gamma * _first(smooth, h)]
     return filtered[:, 0], np.column_stack([*motion, filtered[:, 1:]])
 

@@ -259,6 +259,6 @@ def _first(pieces: Sequence[Signals]) -> list[Signals]:
     used, left = [], _MOST
     for piece in pieces:
         if left > 0:
-            used.append(replace(piece, tau_e=None).up_to(left))
+            used.append(replace(piece, tau_e=None)[:left])
             left -= len(piece.theta)
     return used
