@@ -14,7 +14,7 @@ import numpy as np
 
 from sigmahat.fmi.instance import Fmu, Slave, Value, installed
 from sigmahat.identification.coherence import coherent_range, is_hidden
-from sigmahat.identification.motor import KnownInertia, fit_motor
+from sigmahat.identification.motor import KnownInertia, MotorFit, fit_motor
 from sigmahat.identification.noise import TorqueNoise, count, is_only_noise, low_pass
 from sigmahat.identification.quantities import WIDE, Identified, Quantity
 from sigmahat.identification.regression import Signals, set_point_moves, shortest, signals_of
@@ -114,15 +114,10 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
     motor = fit_motor(springs, h, gamma, symmetric, f_0, inertia)
     quantities = dict(motor.quantities)
     no_torque = all(is_only_noise(piece.tau) for piece in pieces)
-    notes = _notes(
-        changed=None if change is None else change * h,
-        B=quantities["B"],
-        wrong=inertia if motor.contradicted else None,
-        no_torque=no_torque,
-        hidden=hidden,
-    )
+    changed = None if change is None else change * h
     if no_torque or hidden:
-        quantities = {name: _not_shown(each) for name, each in quantities.items()}
+        for name, each in quantities.items():
+            quantities[name] = Quantity(math.nan, math.inf, each.unit, determined=False)
     if quantities["B"].determined:  # until here it was that of the configuration
         bandwidth = replace(noise, inertia=quantities["B"].value * abs(gamma)).bandwidth
     if torque_constant and (nominal := configuration.ports["tau"].torque_constant) is not None:
@@ -153,24 +148,25 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
         else max(spring, *(abs(gamma) * float(np.max(np.abs(each.tau))) for each in pieces)),
         B=float(every["motor.B"]),
         D_theta=float(every["motor.D_theta"]),
-        notes=[*samples.notes, *notes],
+        notes=[*samples.notes, *_notes(changed, motor, inertia, no_torque, hidden)],
     )
 
 
 def _notes(
-    changed: float | None, B: Quantity, wrong: KnownInertia | None, no_torque: bool, hidden: bool
+    changed: float | None,
+    motor: MotorFit,
+    inertia: KnownInertia | None,
+    no_torque: bool,
+    hidden: bool,
 ) -> Iterator[str]:
-    """What a log does not show, or not as the configuration says.
-
-    changed  time of a change of the stiffness [s]
-    wrong    what is known of B, if B contradicts it
-    """
+    """What a log does not show, or not as the configuration says; changed at a time [s]."""
     if changed is not None:
         yield _CHANGES.format(t=changed)
     if no_torque or hidden:
         yield _NO_TORQUE if no_torque else _HIDDEN
-    elif wrong is not None:
-        yield _CONTRADICTED.format(found=B.value, given=wrong.value, std=100 * wrong.std)
+    elif motor.contradicted and inertia is not None:
+        found, std = motor.quantities["B"].value, 100 * inertia.std
+        yield _CONTRADICTED.format(found=found, given=inertia.value, std=std)
 
 
 def _set_points(pieces: Sequence[Signals], has_effect: bool) -> tuple[float, float]:
@@ -179,10 +175,6 @@ def _set_points(pieces: Sequence[Signals], has_effect: bool) -> tuple[float, flo
     ends = [float(end(piece.set_point)) for piece in pieces for end in (np.min, np.max)]
     center = (min(ends) + max(ends)) / 2 if has_effect else 0.0
     return center, max(abs(end - center) for end in ends)
-
-
-def _not_shown(quantity: Quantity) -> Quantity:
-    return replace(quantity, value=math.nan, half_width=math.inf, determined=False)
 
 
 def _apart(pieces: Sequence[Signals], count: float) -> int:
