@@ -172,8 +172,8 @@ def _branch(columns: dict[str, Array], rows: Array) -> Branch:
     )
 
 
-STIFFNESS_HEAD = ("phi [rad]", "sigma [N.m/rad]", "95 % interval")
-FAMILY_HEAD = (
+_STIFFNESS_HEAD = ("phi [rad]", "sigma [N.m/rad]", "95 % interval")
+_FAMILY_HEAD = (
     "setPoint",
     "phi from [rad]",
     "to [rad]",
@@ -181,8 +181,6 @@ FAMILY_HEAD = (
     "in the middle [N.m/rad]",
     "half way up",
 )
-
-
 _MOST_SETTINGS = 5  # largest number of set-points in a headline
 
 
@@ -244,11 +242,10 @@ def curve_text(curve: Curve, polynomial: bool = True) -> list[str]:
     lines = [f"the stiffness as a curve, {reach_in_words(curve)}:"]
     if polynomial:
         lines.append(f"  {polynomial_in_words(curve.polynomial)}")
-    rows: list[Sequence[str]] = [STIFFNESS_HEAD, *stiffness_rows(curve)]
+    head, *rows = stiffness_table(curve)
     if len(curve.branches) > 1:
-        every = list(family_rows(curve))
-        rows = [FAMILY_HEAD, *every[:: len(every) // 2]]
-    lines += [f"  {line}" for line in aligned(rows, left=())]
+        rows = rows[:: len(rows) // 2]
+    lines += [f"  {line}" for line in aligned([head, *rows], left=())]
     return lines
 
 
@@ -288,21 +285,19 @@ def _sum(terms: Sequence[str]) -> str:
     return " + ".join(terms).replace("+ -", "- ")
 
 
-def stiffness_rows(curve: Curve) -> Iterator[tuple[str, ...]]:
-    """Cells of STIFFNESS_HEAD: the stiffness in the middle of the deformations, and half
-    way from there to both ends."""
+def stiffness_table(curve: Curve) -> Iterator[tuple[str, ...]]:
+    """Cells of a head, and of a row for each characteristic deformation; or, of several
+    set-points, for each set-point."""
+    several = len(curve.branches) > 1
+    yield _FAMILY_HEAD if several else _STIFFNESS_HEAD
     for branch in curve.branches:
-        for phi in characteristic(branch.reach):
-            yield f"{phi:.4g}", *_stiffness(branch, phi)
-
-
-def family_rows(curve: Curve) -> Iterator[tuple[str, ...]]:
-    """Cells of FAMILY_HEAD: a row of stiffnesses for each set-point."""
-    for branch in curve.branches:
-        cells = [_stiffness(branch, phi) for phi in characteristic(branch.reach)]
-        reach = (f"{end:.4g}" for end in branch.reach)
-        stiffness = (f"{sigma} ({interval})" for sigma, interval in cells)
-        yield f"{branch.set_point:.4g}", *reach, *stiffness
+        points = characteristic(branch.reach)
+        rows: list[tuple[str, ...]] = [(f"{phi:.4g}", *_stiffness(branch, phi)) for phi in points]
+        if several:
+            reach = (f"{end:.4g}" for end in branch.reach)
+            stiffness = (f"{sigma} ({interval})" for _, sigma, interval in rows)
+            rows = [(f"{branch.set_point:.4g}", *reach, *stiffness)]
+        yield from rows
 
 
 def stiffness_points(curve: Curve) -> list[dict[str, object]]:

@@ -14,15 +14,12 @@ from sigmahat.files.tables import read_csv
 from sigmahat.joint import sheet
 from sigmahat.joint.curve import (
     CURVE,
-    FAMILY_HEAD,
-    STIFFNESS_HEAD,
     Curve,
-    family_rows,
     headline,
     polynomial_in_words,
     reach_in_words,
     read_curve,
-    stiffness_rows,
+    stiffness_table,
 )
 from sigmahat.joint.sheet import Sheet
 from sigmahat.logs import estimate as estimation
@@ -223,15 +220,14 @@ _FROM = {"prior": "the configuration (prior)", "identify": "identify", "exact": 
 
 def curve_table(curve: Curve) -> TextTable:
     """The stiffness with its interval, the range of the curve, and the polynomial."""
-    several = len(curve.branches) > 1
-    head = [plain_text(cell) for cell in (FAMILY_HEAD if several else STIFFNESS_HEAD)]
-    rows = list(family_rows(curve) if several else stiffness_rows(curve))
+    head, *rows = stiffness_table(curve)
     words = plain_text(polynomial_in_words(curve.polynomial))
     reach = plain_text(reach_in_words(curve))
     note = f"The curve holds {reach}; outside (faded in the plots), it is a guess. {words}."
     if not curve.claims:
         note += " The method gives no interval."
-    return TextTable("Stiffness", head, rows, [False] * len(rows[0]), note=note)
+    titles = [plain_text(cell) for cell in head]
+    return TextTable("Stiffness", titles, rows, [False] * len(head), note=note)
 
 
 def found_table(sheet: Sheet) -> TextTable:
