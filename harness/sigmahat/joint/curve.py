@@ -14,10 +14,8 @@ import pyarrow as pa
 from numpy.typing import NDArray
 
 from sigmahat.files.tables import aligned, numeric_columns, read_csv, title, write_csv
-from sigmahat.joint.sheet import Polynomial
+from sigmahat.joint.sheet import Array, Polynomial
 from sigmahat.joint.stored import Range
-
-Array = NDArray[np.float64]
 
 NORMAL_95 = 1.96  # half the width of a 95 % interval divided by the standard deviation
 _NEAR = 0.25

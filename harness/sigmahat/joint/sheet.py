@@ -7,7 +7,7 @@ Numbers are written with all of their digits, so that a reader gets exactly the 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
 
@@ -19,6 +19,8 @@ from sigmahat.files.output import write_json
 from sigmahat.fmi.instance import Slave, Value
 from sigmahat.fmi.sample_loop import present_values
 from sigmahat.joint.stored import NO_OTHER_KEYS, FmuId, Format, LearnedLog, Range, Text
+
+Array = NDArray[np.float64]
 
 UNITS = {"phi": "rad", "set_point": "1", "sigma": "N.m/rad", "tau_e": "N.m", "misfit": "1"}
 
@@ -56,9 +58,7 @@ class Polynomial:
     """Range of the measured deformation [rad]; outside, the polynomial is a guess."""
     set_point: Range | None  #: Range of the set-point in the data [1].
 
-    def at(
-        self, phi: NDArray[np.float64], set_point: float | NDArray[np.float64]
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def at(self, phi: Array, set_point: float | Array) -> tuple[Array, Array]:
         """Torque [N.m] and stiffness [N.m/rad] at deformations [rad].
 
         set_point  one for all deformations, or one for each [1]
@@ -161,7 +161,9 @@ def powers_of_phi(symmetric: bool, n: int) -> list[int]:
     return [2 * i + 1 if symmetric else i for i in range(n)]
 
 
-_UNITS_OF_POWERS = {0: "N.m", 1: "N.m/rad"}
+def _units(powers: Sequence[int], m: int) -> list[list[str]]:
+    """Units of the coefficients, of m powers of the set-point."""
+    return [[{0: "N.m", 1: "N.m/rad"}.get(power, f"N.m/rad{power}")] * m for power in powers]
 
 
 def polynomial(
@@ -174,7 +176,7 @@ def polynomial(
         powers_of_phi=powers,
         powers_of_set_point=list(range(m)),
         eta=[[float(start[f"rls.eta_0[{i},{j}]"]) for j in range(m)] for i in range(n)],
-        units=[[_UNITS_OF_POWERS.get(p, f"N.m/rad{p}")] * m for p in powers],
+        units=_units(powers, m),
         phi=phi,
         set_point=set_point,
     )
@@ -186,11 +188,7 @@ _SAME = 1e-6  # relative difference of two stiffnesses by rounding
 
 
 def with_knees(
-    curve: Polynomial,
-    phi: NDArray[np.float64],
-    set_point: NDArray[np.float64],
-    tau_e: NDArray[np.float64],
-    sigma: NDArray[np.float64],
+    curve: Polynomial, phi: Array, set_point: Array, tau_e: Array, sigma: Array
 ) -> Polynomial:
     """The polynomial that is nearest to the curve of an estimator, which may have knees.
 
@@ -202,21 +200,18 @@ def with_knees(
     torque, beyond = tau_e - torque, sigma - stiffness
     if not np.any(np.abs(beyond) > _SAME * np.max(np.abs(sigma), initial=0.0)):
         return curve
-    most = min(_MOST_POWERS, _MOST_COEFFICIENTS // len(curve.powers_of_set_point))
+    m = len(curve.powers_of_set_point)
+    most = min(_MOST_POWERS, _MOST_COEFFICIENTS // m)
     powers = powers_of_phi(0 not in curve.powers_of_phi, max(most, len(curve.eta)))
     largest = float(np.max(np.abs(phi)))
     x = phi / largest
     rows = [np.concatenate([x**e, e * x ** max(e - 1, 0)]) for e in powers]
-    found = np.linalg.lstsq(
-        np.transpose(rows), np.concatenate([torque, beyond * largest]), rcond=None
-    )[0]
-    eta = [[0.0] * len(curve.powers_of_set_point) for _ in powers]
-    for i, e in enumerate(powers):
-        if i < len(curve.eta):
-            eta[i] = list(curve.eta[i])
-        eta[i][0] += float(found[i]) / largest**e
-    units = [[_UNITS_OF_POWERS.get(e, f"N.m/rad{e}")] * len(eta[0]) for e in powers]
-    return replace(curve, powers_of_phi=powers, eta=eta, units=units)
+    wanted = np.concatenate([torque, beyond * largest])
+    found = np.linalg.lstsq(np.transpose(rows), wanted, rcond=None)[0].tolist()
+    eta = [*map(list, curve.eta), *([0.0] * m for _ in powers[len(curve.eta) :])]
+    for row, coefficient, e in zip(eta, found, powers, strict=True):
+        row[0] += coefficient / largest**e
+    return replace(curve, powers_of_phi=powers, eta=eta, units=_units(powers, m))
 
 
 def start_of(curve: Polynomial) -> dict[str, Value]:
