@@ -14,7 +14,9 @@ import tomlkit
 from numpy.typing import NDArray
 
 from plant_runs import run_awas, sinusoids, times
-from sigmahat.logs.configuration import Configuration, checked_configuration
+from sigmahat.identification.quantities import Identified
+from sigmahat.identification.write import update
+from sigmahat.logs.configuration import Configuration, checked_configuration, read_document
 
 Array = NDArray[np.float64]
 Columns = dict[str, Array]
@@ -62,6 +64,14 @@ def configured(*parameters: str, ports: Sequence[str] = ("theta", "q", "tau")) -
 def in_memory(configuration: str) -> Configuration:
     """A configuration that is in no file."""
     return checked_configuration(tomlkit.parse(configuration), Path("log.toml"))
+
+
+def write(found: Identified, path: Path) -> list[str]:
+    """Writes what was identified into a configuration; gives the keys that were set."""
+    document = read_document(path)
+    written = update(document, found)
+    path.write_text(tomlkit.dumps(document))
+    return written
 
 
 def awas_log(

@@ -7,11 +7,10 @@ import numpy as np
 import pytest
 
 from foreign_joint import GEAR, STIFFNESS, T, joint
-from recorded_logs import Array, configured, in_memory
+from recorded_logs import Array, configured, in_memory, write
 from sigmahat.checks.check import check
 from sigmahat.checks.findings import Kind
 from sigmahat.identification.identify import identify
-from sigmahat.identification.write import write
 from sigmahat.logs.configuration import read_configuration
 from sigmahat.logs.estimate import estimate
 from sigmahat.logs.log import LogInMemory

@@ -22,6 +22,7 @@ from recorded_logs import (
     configured,
     in_memory,
     read_estimate,
+    write,
     write_log,
 )
 from regression_joint import Joint
@@ -29,7 +30,6 @@ from sigmahat.fmi.instance import Fmu
 from sigmahat.identification.identify import identify
 from sigmahat.identification.quantities import Identified, Quantity
 from sigmahat.identification.regression import Form, Signals, equations, fit
-from sigmahat.identification.write import write
 from sigmahat.logs.configuration import read_configuration
 from sigmahat.logs.log import Array, LogInMemory
 

@@ -6,13 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from recorded_logs import CONFIGURATION, Array, Columns, T, awas_log
+from recorded_logs import CONFIGURATION, Array, Columns, T, awas_log, write
 from sigmahat.identification.coherence import coherent_range
 from sigmahat.identification.identify import identify
 from sigmahat.identification.noise import TorqueNoise
 from sigmahat.identification.quantities import Identified
 from sigmahat.identification.regression import Signals
-from sigmahat.identification.write import write
 from sigmahat.logs.configuration import read_configuration
 from sigmahat.logs.log import LogInMemory
 from sigmahat.logs.units import convert

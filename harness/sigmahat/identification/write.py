@@ -3,14 +3,12 @@
 import math
 from collections.abc import Mapping
 from copy import copy
-from pathlib import Path
 from typing import Any
 
 import tomlkit
 from tomlkit.items import Item
 
 from sigmahat.files import toml_file
-from sigmahat.files.output import write_whole
 from sigmahat.fmi.instance import installed
 from sigmahat.identification.quantities import WIDE, Identified, Quantity
 from sigmahat.identification.regression import MOTOR
@@ -22,7 +20,6 @@ from sigmahat.logs.configuration import (
     NOT_YOURS,
     WIDE_PRIOR,
     Port,
-    read_document,
 )
 from sigmahat.logs.units import scale
 
@@ -39,19 +36,9 @@ _NOT_KNOWN = (WIDE_PRIOR, NOT_YOURS, _MIDDLE, CHOSEN)
 """Comments of values that the next log may tell."""
 
 
-def write(found: Identified, path: Path, joint: str = "") -> list[str]:
-    """Writes what was identified into a file, as `update` does; joint is one of several in it.
-
-    Returns the keys that were written. The file is replaced at once, or not changed.
-    """
-    document = read_document(path)
-    written = update(document, found, joint)
-    write_whole(tomlkit.dumps(document), path)
-    return written
-
-
 def update(document: tomlkit.TOMLDocument, found: Identified, joint: str = "") -> list[str]:
-    """Sets what is determined in [parameters] and [ports.tau], everything in [identified].
+    """Sets what is determined in [parameters] and [ports.tau], everything in [identified]; joint is
+    one of several in the document.
 
     What is not determined gets a wide prior, unless the file has one above 0. If nobody has set its
     value either, a comment says so: no value of another robot stays unnoticed.
