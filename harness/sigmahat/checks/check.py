@@ -155,12 +155,12 @@ def _tried(seen: View, finding: Finding) -> Finding:
     return replace(finding, key=best[0], proposed=best[1], others=others)
 
 
-def _left(seen: View, key: str, value: Proposal | None) -> list[Finding] | None:
+def _left(seen: View, key: str, value: Proposal | None) -> Sequence[Finding] | None:
     """What is found with another value of a key; None if the value cannot be tried."""
     if value is None:
         return None
     try:
-        return [*_contradictions(_view(seen.log, changed(seen.configuration, key, value)))]
+        return _contradictions(_view(seen.log, changed(seen.configuration, key, value)))
     except (LogError, FmuError):
         return None
 
@@ -177,17 +177,14 @@ def changed(configuration: Configuration, key: str, value: Any) -> Configuration
     return replace(configuration, ports={**configuration.ports, port: own})
 
 
-def _contradictions(seen: View) -> Iterator[Finding]:
+def _contradictions(seen: View) -> Sequence[Finding]:
     """What the log contradicts, without findings that only follow from another finding."""
-    still = list(at_rest(seen))
-    if still:
-        yield from still
-        return
+    if still := list(at_rest(seen)):
+        return still
     recorded = list(columns(seen))
     if any(each.kind in (Kind.JUMP, Kind.SPIKE) for each in recorded):
-        yield from recorded
-        return
-    yield from _of_motion(seen, recorded)
+        return recorded
+    return list(_of_motion(seen, recorded))
 
 
 def _of_motion(seen: View, recorded: Sequence[Finding]) -> Iterator[Finding]:

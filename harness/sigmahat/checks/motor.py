@@ -19,7 +19,6 @@ from sigmahat.identification.spring import Spring
 from sigmahat.logs.log import Array
 
 LINEAR = "eta[0,0]"  # the column of the linear spring in a symmetric polynomial
-_HIGHEST = 0.1  # of the sampling frequency: low pass of the velocity in the Coulomb friction
 _SLOWEST = 0.1  # [s] between ticks: a slower log does not show the motion of a joint
 _ORDERS = 3
 _STEPS = 4  # of Newton's method for the delay
@@ -56,7 +55,7 @@ def fitted(seen: View, f_0: float | None = None) -> Fitted | None:
     m_most = _ORDERS if np.ptp(seen.pieces[0].set_point) > 0 else 1
     symmetric = bool(seen.every["rls.symmetric"])
     n_most = _ORDERS if symmetric else 2 * _ORDERS  # so the highest power is about the same
-    form = Form(f_0, min(2.5 * f_0, _HIGHEST / seen.T), n_most, m_most, symmetric)
+    form = Form(f_0, min(2.5 * f_0, regression.WIDEST / seen.T), n_most, m_most, symmetric)
     form, system = _chosen(seen, form)
     line = _equations(seen, replace(form, n=1, m=1, symmetric=True))
     return Fitted(form, fit(system), fit(line), Spring(form, system.units))

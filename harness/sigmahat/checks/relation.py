@@ -187,15 +187,11 @@ def _by_torque(here: Relation, slope: Slope, every: list[Change]) -> Change | No
         """The change with the smallest value is tried first."""
         return _ANY if each.fits_any else round(distance(each.on_theta, abs(slope.value)), 1)
 
-    f_0 = here.fitted.form.f_0 if here.fitted else None  # errors compare with one filter only
-    best: Change | None = None
-    found = here.fitted
+    best, found = None, here.fitted
+    f_0 = found.form.f_0 if found else None  # errors compare with one filter only
     for change in sorted(every, key=unlikely):
         after = fitted(_scaled(here.seen, change.port, change.factor), f_0)
-        is_next = _is_better(found, after)
-        if best is None:
-            is_next = _is_plausible(here, after, slope)
-        if is_next:
+        if _is_plausible(here, after, slope) if best is None else _is_better(found, after):
             best, found = change, after
     return best
 
