@@ -151,11 +151,12 @@ def _together(ports: Mapping[str, PortGuess], motor: Column, link: Column) -> di
     if fitted.slope < 0:
         q = q.noted("sign", "it moves against the motor", sign=-1)
     slope = math.copysign(ratio or abs(fitted.slope), fitted.slope)
-    zeros = _zeros(motor.window, link.window, slope, fitted.rest * float(np.std(link.window)))
-    if zeros is not None:
+    deformation = link.window - slope * motor.window
+    spread = max(fitted.rest * float(np.std(link.window)), float(np.std(deformation)))
+    if abs(float(np.mean(deformation))) > _APART * spread:
         note = "CHECK: mean of the column, as the zeros of both do not agree"
-        theta = theta.noted("zero", note, zero=_short(zeros[0], motor))
-        q = q.noted("zero", note, zero=_short(zeros[1], link))
+        theta = theta.noted("zero", note, zero=_mean(motor))
+        q = q.noted("zero", note, zero=_mean(link))
     return {"theta": theta, "q": q}
 
 
@@ -210,19 +211,9 @@ def _ratio(theta: PortGuess, q: PortGuess) -> float | None:
     return TURN[q.unit] / TURN[theta.unit] / theta.gear_ratio
 
 
-def _zeros(theta: Array, q: Array, slope: float, spread: float) -> tuple[float, float] | None:
-    """Means of both columns, if their zeros do not agree; None if the zeros agree.
-
-    spread  standard deviation of the part of q that the motion of the motor does not explain
-    """
-    deformation = q - slope * theta
-    if abs(float(np.mean(deformation))) <= _APART * max(spread, float(np.std(deformation))):
-        return None
-    return float(np.mean(theta)), float(np.mean(q))
-
-
-def _short(zero: float, column: Column) -> float:
-    return float(round(zero)) if column.facts.integer else float(f"{zero:.6g}")
+def _mean(column: Column) -> float:
+    mean = float(np.mean(column.window))
+    return float(round(mean)) if column.facts.integer else float(f"{mean:.6g}")
 
 
 def _torque(port: PortGuess, roles: Roles) -> PortGuess:

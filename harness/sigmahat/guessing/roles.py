@@ -219,6 +219,7 @@ def _silent_torque(
 
 def _setting(columns: Sequence[Column], ports: Mapping[str, Role]) -> dict[str, Role]:
     """The motor that sets the stiffness: by its name, or a second, independent motor."""
+    windows = [role.column.window for role in ports.values()]
     possible = [
         each
         for each in columns
@@ -226,7 +227,7 @@ def _setting(columns: Sequence[Column], ports: Mapping[str, Role]) -> dict[str, 
         # A set-point may also be of a position.
         and (
             (each.meaning.side == "setting" and not each.meaning.reference)
-            or not _follows(each, ports)
+            or not any(abs(line(each.window, x).correlation) > _CLOSE for x in windows)
         )
     ]
     named = [each for each in possible if each.meaning.side == "setting"]
@@ -244,8 +245,3 @@ def _setting(columns: Sequence[Column], ports: Mapping[str, Role]) -> dict[str, 
             "theta_c": Role(second[0], "position of a second motor; the link follows the first one")
         }
     return {}
-
-
-def _follows(column: Column, ports: Mapping[str, Role]) -> bool:
-    windows = [role.column.window for role in ports.values()]
-    return any(abs(line(column.window, each).correlation) > _CLOSE for each in windows)
