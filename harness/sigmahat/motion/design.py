@@ -11,7 +11,6 @@ from pathlib import Path
 import numpy as np
 import tomlkit
 
-from sigmahat.files.toml_file import set_dotted
 from sigmahat.identification.identify import identify
 from sigmahat.identification.write import update
 from sigmahat.joint.curve import stiffness_in_the_middle
@@ -55,16 +54,13 @@ def relative_half_width(joint: Joint, motion: Multisine, sensors: Sensors) -> fl
     log = _log(joint, motion, sensors)
     document = tomlkit.document()
     document["ports"] = {name: {"column": name} for name in ("theta", "q", "tau")}
-    document["parameters"] = parameters = tomlkit.table()
-    for name, value in {
+    document["parameters"] = {
         "method": "FilteredRegression",
-        "motor.gamma": sensors.gear_ratio,
+        "motor": {"gamma": sensors.gear_ratio},
         "samplePeriod": sensors.T,
-        "encoder.theta": sensors.counts[0],
-        "encoder.q": sensors.counts[1],
-        "prior.torque_gain": sensors.torque_gain,
-    }.items():
-        set_dotted(parameters, name, tomlkit.item(value))
+        "encoder": {"theta": sensors.counts[0], "q": sensors.counts[1]},
+        "prior": {"torque_gain": sensors.torque_gain},
+    }
     configured = partial(checked_configuration, document, log.path)
     try:
         update(document, identify(log, configured()))
