@@ -208,8 +208,9 @@ def knees(
     usual = float(np.quantile(phi, _NOT_RARE))
 
     def beyond(shares: Array) -> Equations:
-        places = shares * usual
-        with_knees = [replace(p, extra=_beyond(p.phi - zero, places)) for p in used]
+        places, phis = shares * usual, [piece.phi[:, None] - zero for piece in used]
+        columns = [each - np.clip(each, -places, places) for each in phis]
+        with_knees = [replace(p, extra=each) for p, each in zip(used, columns, strict=True)]
         return equations(with_knees, T, gamma, form)
 
     coarse = beyond(_SHARES)
@@ -244,11 +245,6 @@ def _is_one_knee(found: Fit) -> bool:
     """Whether the smaller one of two changes of the slope only corrects the place of the other."""
     changes = [abs(value) for name, value in found.value.items() if name.startswith("extra")]
     return min(changes) < _LEAST_CHANGE * max(changes)
-
-
-def _beyond(phi: Array, places: Array) -> Array:
-    beyond: Array = phi[:, None] - np.clip(phi[:, None], -places, places)
-    return beyond
 
 
 def _first(pieces: Sequence[Signals]) -> list[Signals]:
