@@ -315,12 +315,6 @@ def test_the_estimator_has_columns_for_the_powers_near_a_knee() -> None:
     Estimator({"method": "FilteredRegression", **knees, **start})
 
 
-def test_the_start_values_are_the_curve() -> None:
-    start = start_of(OF_KNEE)
-    assert (start["rls.n"], start["rls.m"]) == (4, 2)
-    assert start["rls.eta_0[1,1]"] == 3.0
-
-
 @pytest.mark.parametrize(
     ("std", "text"),
     [(5.0, "200 +- 9.8 N.m/rad"), (1e9, "cannot tell (200 +- 1.96e+09) N.m/rad")],
