@@ -74,26 +74,24 @@ def update(document: tomlkit.TOMLDocument, found: Identified, joint: str = "") -
     # The log may be one of several, each at another set-point.
     kept = _OF_SET_POINT if given.get("rls.m") and not found.set_point_moves else ()
     values = {
-        name: _short(value)
+        name: value
         for name, value in values.items()
         if name not in kept and (value is False or value != 0)
     }
     parameters = own.setdefault("parameters", tomlkit.table())
     unknown = {name: each for name, each in _unknown(found).items() if name not in given}
     comments = {name: comment for name, (_, comment) in unknown.items()}
-    priors = {name: _short(value) for name, value in _wide_priors(found, comments).items()}
-    wide = {name: value for name, value in priors.items() if not given.get(name)}
+    wide = {n: std for n, std in _wide_priors(found, comments).items() if not given.get(n)}
+    comments |= {name: WIDE_PRIOR for name in wide if name not in given}
+    if found.symmetric and not given.get("rls.symmetric"):
+        comments["rls.symmetric"] = CHOSEN
+    values |= {name: value for name, (value, _) in unknown.items()} | wide
     for name, value in values.items():
-        item = tomlkit.item(value)
-        if name == "rls.symmetric" and value and not given.get(name):
-            item.comment(CHOSEN)
+        item = tomlkit.item(_short(value))
+        if name in comments:
+            item.comment(comments[name])
         toml_file.set_dotted(parameters, name, item)
-    for name, (value, comment) in unknown.items():
-        toml_file.set_dotted(parameters, name, tomlkit.item(_short(value)).comment(comment))
-    for name, value in wide.items():
-        item = tomlkit.item(value)
-        toml_file.set_dotted(parameters, name, item if name in given else item.comment(WIDE_PRIOR))
-    written = [f"parameters.{name}" for name in (*values, *unknown, *wide)]
+    written = [f"parameters.{name}" for name in values]
     constant = found.quantities.get("torque_constant")
     if constant is not None and constant.determined:
         item = tomlkit.item(_short(constant.value))
