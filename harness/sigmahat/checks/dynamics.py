@@ -182,7 +182,11 @@ def _encoder_lag(seen: View, found: Fitted) -> _Delay | None:
     lag = seen.gamma * (value["D_theta"] - D_theta) / slope
     if abs(lag) > motor.LONGEST:
         return None
-    without = motor.with_form(_earlier(seen, lag), found.form)
+    pieces = []
+    for piece in seen.pieces:  # with earlier positions of the link
+        q = motor.moved(piece.theta + piece.phi, lag / seen.T)
+        pieces.append(replace(piece, phi=q - piece.theta))
+    without = motor.with_form(replace(seen, pieces=pieces), found.form)
     error, is_better = float(np.sum(without.squares)), explains(found.fit, without)
     if not is_better and error < found.error:
         is_better = explains(motor.with_known(seen, found.form, "D_theta", 0.0), found.fit)
@@ -197,13 +201,6 @@ def _encoder_lag(seen: View, found: Fitted) -> _Delay | None:
     least_lag = "" if is_known else "at least "
     finding = Finding(Kind.ENCODER_LAG, severity, key, lag, "s", 0.0, proposed, others, least_lag)
     return _Delay(finding, error)
-
-
-def _earlier(seen: View, lag: float) -> View:
-    """The log with earlier positions of the link."""
-    q = [motor.moved(piece.theta + piece.phi, lag / seen.T) for piece in seen.pieces]
-    pieces = [replace(p, phi=moved - p.theta) for p, moved in zip(seen.pieces, q, strict=True)]
-    return replace(seen, pieces=pieces)
 
 
 _AWAS = 2.3e-5  # start value of motor.B [kg.m2]
