@@ -14,7 +14,7 @@ from sigmahat.checks.columns import at_rest, columns
 from sigmahat.checks.dynamics import dynamics
 from sigmahat.checks.findings import Checked, Finding, Kind, Proposal, Severity
 from sigmahat.checks.relation import relation, slope_of
-from sigmahat.checks.view import View, view
+from sigmahat.checks.view import View, all_parameters, view
 from sigmahat.fmi.instance import FmuError, Slave, Value, installed
 from sigmahat.identification.noise import variance
 from sigmahat.identification.quantities import WIDE
@@ -54,7 +54,7 @@ def check(log: Log, configuration: Configuration) -> Checked:
     Raises LogError for a log and configuration that do not fit, FmuError if the FMU refuses.
     """
     fmu = installed("StiffnessEstimator")
-    seen = _view(log, configuration)
+    seen = view(log, configuration)
     every = seen.every
     findings = _swapped(seen) or [_tried(seen, each) for each in _contradictions(seen)]
     # The warnings of the FMU are findings here.
@@ -84,23 +84,14 @@ def check_identified(log: Log, before: Configuration, after: Configuration) -> C
     Raises LogError, FmuError as `check`.
     """
     checked = check(log, after)
-    is_given = "motor.B" in before.parameters and float(_every(before)["prior.B"]) < WIDE
+    is_given = "motor.B" in before.parameters and float(all_parameters(before)["prior.B"]) < WIDE
     if before == after or not is_given:
         return checked
     spoiled = any(each.kind in (Kind.AT_REST, Kind.JUMP, Kind.SPIKE) for each in checked.findings)
-    found = [] if spoiled else _of_motion(_view(log, before), [])  # its columns were checked above
+    found = [] if spoiled else _of_motion(view(log, before), [])  # its columns were checked above
     of_inertia = [each for each in found if each.kind in _INERTIA]
     others = [each for each in checked.findings if each.kind not in _INERTIA]
     return replace(checked, findings=[*of_inertia, *others])
-
-
-def _every(configuration: Configuration) -> dict[str, Value]:
-    fmu = installed("StiffnessEstimator")
-    return fmu.parameters(parameters(fmu, configuration))
-
-
-def _view(log: Log, configuration: Configuration) -> View:
-    return view(log, configuration, _every(configuration))
 
 
 _UNLIKE = 5.0  # slope of q on theta: a soft spring does not make this slope so large
@@ -123,7 +114,7 @@ def _swapped(seen: View) -> list[Finding]:
         "q": replace(q, column=theta.column, time=theta.time, zero=theta.zero),
     }
     try:
-        other = _view(seen.log, replace(seen.configuration, ports={**ports, **turned}))
+        other = view(seen.log, replace(seen.configuration, ports={**ports, **turned}))
     except LogError:
         return []
     slope = slope_of(other.pieces, other.T)
@@ -160,7 +151,7 @@ def _left(seen: View, key: str, value: Proposal | None) -> Sequence[Finding] | N
     if value is None:
         return None
     try:
-        return _contradictions(_view(seen.log, changed(seen.configuration, key, value)))
+        return _contradictions(view(seen.log, changed(seen.configuration, key, value)))
     except (LogError, FmuError):
         return None
 

@@ -5,10 +5,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sigmahat.fmi.instance import Value
+from sigmahat.fmi.instance import Value, installed
 from sigmahat.identification.regression import Signals, signals_of
 from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.log import Log
+from sigmahat.logs.replay import parameters
 from sigmahat.logs.sampling import Samples, sample
 
 _MOST = 60_000
@@ -38,15 +39,19 @@ class View:
         return self.every["modality"] == "Sensor"
 
 
-def view(log: Log, configuration: Configuration, every: Mapping[str, Value]) -> View:
-    """Looks at a log. Raises LogError if log and configuration do not fit.
-
-    every  all parameters of the estimator
-    """
+def view(log: Log, configuration: Configuration) -> View:
+    """Looks at a log. Raises LogError if log and configuration do not fit."""
+    every = all_parameters(configuration)
     configuration.need_ports(str(every["modality"]))
     samples = _liveliest(sample(log, configuration, float(every["samplePeriod"])))
     torque = "tau_e_sensor" if every["modality"] == "Sensor" else "tau"
     return View(log, configuration, every, samples, list(signals_of(samples, every, torque)))
+
+
+def all_parameters(configuration: Configuration) -> dict[str, Value]:
+    """Of the estimator, those that the configuration leaves out included."""
+    fmu = installed("StiffnessEstimator")
+    return fmu.parameters(parameters(fmu, configuration))
 
 
 def _liveliest(samples: Samples) -> Samples:
