@@ -39,7 +39,8 @@ def test_velocity_and_acceleration_are_the_derivatives() -> None:
 
 def test_a_joint_moves_as_a_solver_says() -> None:
     T = 2e-3
-    _, phi, tau = JOINT.move(MOTION, T)
+    theta, velocity, acceleration = MOTION.at(MOTION.times(T))
+    phi, tau = JOINT.respond(theta, velocity, acceleration, T)
     c = 0.02 * 2 * np.sqrt(JOINT.k * JOINT.M)
 
     def derivatives(t: float, x: np.ndarray) -> list[float]:
@@ -52,7 +53,6 @@ def test_a_joint_moves_as_a_solver_says() -> None:
     t = MOTION.times(T)[:3000]
     solved = solve_ivp(derivatives, (0, 6), start, "Radau", t, rtol=1e-8, atol=1e-11)
     np.testing.assert_allclose(phi[:3000], solved.y[0], atol=2e-5 * np.abs(phi).max())
-    _, velocity, acceleration = MOTION.at(MOTION.times(T))
     friction = JOINT.D_theta * velocity + JOINT.tau_coulomb * np.tanh(velocity / 1e-3)
     np.testing.assert_allclose(tau, JOINT.B * acceleration + friction - JOINT.k * phi)
 

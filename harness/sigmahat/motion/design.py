@@ -75,7 +75,8 @@ def relative_half_width(joint: Joint, motion: Multisine, sensors: Sensors) -> fl
 
 
 def _log(joint: Joint, motion: Multisine, sensors: Sensors) -> LogInMemory:
-    theta, phi, torque = joint.move(motion, sensors.T)
+    theta, velocity, acceleration = motion.at(motion.times(sensors.T))
+    phi, torque = joint.respond(theta, velocity, acceleration, sensors.T)
     noise = sensors.noise * np.random.default_rng(1).standard_normal(len(theta))
     columns = {
         "theta": _rounded(theta, sensors.counts[0]),

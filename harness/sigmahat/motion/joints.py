@@ -82,11 +82,6 @@ class Joint:
         """Resonance of link and spring with the motor held [Hz]."""
         return float(np.sqrt(self.k / self.M)) / (2 * np.pi)
 
-    def move(self, motion: Multisine, T: float) -> tuple[Array, Array, Array]:
-        """Motor [rad], deformation [rad] and torque of the motor [N.m] at k T."""
-        theta, velocity, acceleration = motion.at(motion.times(T))
-        return theta, *self.respond(theta, velocity, acceleration, T)
-
     def respond(
         self, theta: Array, velocity: Array, acceleration: Array, T: float
     ) -> tuple[Array, Array]:
