@@ -47,13 +47,6 @@ def test_the_zero_is_where_the_spring_has_no_torque(path: Path) -> None:
     assert again.zero == 0 and "ports.q.zero" not in write(again, path)
 
 
-def test_a_right_zero_is_left(path: Path) -> None:
-    found = identified(awas_log(3.0, 0.3, 8.0), path)
-    assert found.zero == 0
-    assert abs(found.quantities["zero"].value) <= found.quantities["zero"].half_width
-    assert "ports.q.zero" not in write(found, path)
-
-
 def motor(noise_of_phi: float) -> Signals:
     """A spring of 300 N.m/rad on a motor that follows two sines, and noise above 3 Hz in phi."""
     rng = np.random.default_rng(1)
