@@ -27,7 +27,6 @@ class _Start:
     variable: Any  # FMPy's description
     value: float | int  # an enumeration as the number of its item
     item: str  # item of an enumeration; else empty
-    is_default: bool  # whether the FMU starts with this value anyway
 
     @property
     def text(self) -> str:
@@ -47,12 +46,11 @@ def write(sheet: Sheet, fmu: Fmu, kind: str, path: Path) -> None:
 
 
 def _starts(sheet: Sheet, fmu: Fmu) -> Iterator[_Start]:
-    own = fmu.parameters({})
     for name, value in sheet.start_values.items():
         variable = fmu.variable(name, "parameter")
         number = fmu.number(name, value)
         item = fmu.items(name)[int(number)] if variable.type == "Enumeration" else ""
-        yield _Start(name, variable, number, item, own[name] == (item or number))
+        yield _Start(name, variable, number, item)
 
 
 def _head(sheet: Sheet) -> Iterator[str]:
@@ -67,8 +65,8 @@ def _ssv(sheet: Sheet, fmu: Fmu, starts: list[_Start], name: str) -> str:
     Importers disagree on the form of Booleans and enumerations: they are written only if the
     default of the FMU differs.
     """
-    numbers = ("Real", "Integer")
-    listed = [s for s in starts if s.variable.type in numbers or not s.is_default]
+    numbers, own = ("Real", "Integer"), fmu.parameters({})
+    listed = [s for s in starts if s.variable.type in numbers or own[s.name] != (s.item or s.value)]
     units = {s.variable.unit for s in listed}
     if re.search(r"[\x00-\x1f\ud800-\udfff\ufffe\uffff]", name):
         raise ValueError(
