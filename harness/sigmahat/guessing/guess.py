@@ -14,7 +14,6 @@ from sigmahat.fmi.unknown_name import unknown
 from sigmahat.guessing.columns import Clock, Column, Columns
 from sigmahat.guessing.ports import PortGuess, guess_ports
 from sigmahat.guessing.roles import Roles, assign, chosen_roles
-from sigmahat.logs.configuration import PORTS
 from sigmahat.logs.log import Log, LogError
 
 _OF_A_JOINT = ("position", "torque", "current", None)
@@ -100,7 +99,6 @@ def guess_chosen(columns: Columns, names: Mapping[str, str | None]) -> dict[str,
 
 
 def _joint(name: str, roles: Roles, columns: Columns) -> JointGuess:
-    clocks = {port: role.column.clock for port, role in roles.ports.items()}
-    first = [clocks[port] for port in PORTS if port in clocks]
-    main = first[0] if first else next(iter(columns.clocks))
+    clocks = [role.column.clock for role in roles.ports.values()]
+    main = clocks[0] if clocks else next(iter(columns.clocks))
     return JointGuess(name, main, columns.clocks[main], guess_ports(roles, columns, main))
