@@ -91,8 +91,8 @@ def _gear(seen: View, found: Fitted) -> Finding | None:
     if error is None or not abs(error.value - 1) > error.half_width + _LEAST_GEAR:
         return None
     # An asymmetric spring, or a wrong zero, must not explain the torque as well.
-    others = min(found.error, float(np.sum(with_all_powers(seen, found.form).squares)))
-    if not float(np.sum(error.fit.squares)) < _MUCH * others:
+    others = min(found.fit.error, with_all_powers(seen, found.form).error)
+    if not error.fit.error < _MUCH * others:
         return None
     change = gear_of(seen.configuration.ports["theta"], error.value, error.half_width)
     slope = 1 / error.value
@@ -130,7 +130,7 @@ def _asymmetry(seen: View, found: Fitted) -> Iterator[Finding]:
     """A spring that is softer to one side, where only odd powers are used."""
     with_all = with_all_powers(seen, found.form)
     if explains(found.fit, with_all):
-        times = math.sqrt(found.error / float(np.sum(with_all.squares)))
+        times = math.sqrt(found.fit.error / with_all.error)
         key = "rls.symmetric"
         yield Finding(Kind.ASYMMETRY, Severity.NOTE, key, times, "", 1.0, proposed=False)
 
@@ -164,7 +164,7 @@ def _late(seen: View, found: Fitted) -> _Delay | None:
     proposed = None if is_expected else float(f"{port.delay + late.value:.3g}")
     key = "ports.tau.delay"
     finding = Finding(Kind.TORQUE_LAG, severity, key, late.value, "s", 0.0, proposed)
-    return _Delay(finding, float(np.sum(late.fit.squares)))
+    return _Delay(finding, late.fit.error)
 
 
 def _encoder_lag(seen: View, found: Fitted) -> _Delay | None:
@@ -187,8 +187,8 @@ def _encoder_lag(seen: View, found: Fitted) -> _Delay | None:
         q = motor.moved(piece.theta + piece.phi, lag / seen.T)
         pieces.append(replace(piece, phi=q - piece.theta))
     without = motor.with_form(replace(seen, pieces=pieces), found.form)
-    error, is_better = float(np.sum(without.squares)), explains(found.fit, without)
-    if not is_better and error < found.error:
+    is_better = explains(found.fit, without)
+    if not is_better and without.error < found.fit.error:
         is_better = explains(motor.with_known(seen, found.form, "D_theta", 0.0), found.fit)
     if not is_better:
         return None
@@ -200,7 +200,7 @@ def _encoder_lag(seen: View, found: Fitted) -> _Delay | None:
     key = "ports.q.delay"
     least_lag = "" if is_known else "at least "
     finding = Finding(Kind.ENCODER_LAG, severity, key, lag, "s", 0.0, proposed, others, least_lag)
-    return _Delay(finding, error)
+    return _Delay(finding, without.error)
 
 
 _AWAS = 2.3e-5  # start value of motor.B [kg.m2]

@@ -35,11 +35,6 @@ class Fitted:
     linear: Fit  # fit with a linear spring
     spring: Spring  # the polynomial
 
-    @property
-    def error(self) -> float:
-        """Sum of the squared errors; nan if nothing is determined."""
-        return float(np.sum(self.fit.squares))
-
 
 def fitted(seen: View, f_0: float | None = None) -> Fitted | None:
     """Fits the motor equation, or with a torque sensor the spring alone.
@@ -142,8 +137,7 @@ def with_known(seen: View, form: Form, name: str, value: float) -> Fit:
 
 def explains(before: Fit, after: Fit) -> bool:
     """Whether a change explains much of the errors before the change."""
-    less = float(np.sum(after.squares)) < _BETTER * float(np.sum(before.squares))
-    return less and regression.is_worse(before, after)
+    return after.error < _BETTER * before.error and regression.is_worse(before, after)
 
 
 def _band(seen: View) -> float:

@@ -276,4 +276,4 @@ def _is_stiffness_negative(seen: View, found: Fitted) -> bool:
 def _is_better(before: Fitted | None, after: Fitted | None) -> bool:
     if before is None or after is None:
         return False
-    return is_worse(before.fit, after.fit) and after.error < _BETTER * before.error
+    return is_worse(before.fit, after.fit) and after.fit.error < _BETTER * before.fit.error

@@ -192,8 +192,7 @@ def _variants(
     plain, other = (late, form) if is_worse(every[form][0], every[late][0]) else (form, late)
     del every[other]
     every |= {each: fits_of(each) for each in _frictions(plain)}
-    errors = {each: float(np.sum(fits[0].squares)) for each, fits in every.items()}
-    best = min(errors, key=lambda each: np.nan_to_num(errors[each], nan=np.inf))
+    best = min(every, key=lambda each: np.nan_to_num(every[each][0].error, nan=np.inf))
     chosen = best if is_worse(every[plain][0], every[best][0]) else plain
     filters = [
         fits_of(replace(chosen, wide=min(2 * form.wide, 2 * WIDEST / T))),

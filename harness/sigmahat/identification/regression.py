@@ -384,6 +384,11 @@ class Fit:
         std = np.sqrt(np.diag(self.covariance))
         return dict(zip(self.value, (self.quantile * std).tolist(), strict=True))
 
+    @property
+    def error(self) -> float:
+        """Sum of the squared errors; nan if nothing is determined."""
+        return float(np.sum(self.squares))
+
 
 def fit(e: Equations) -> Fit:
     """Solves Z'X p = Z'y for both halves together.

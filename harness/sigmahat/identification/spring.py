@@ -233,8 +233,7 @@ def _least(e: Equations, shares: Array, number: int) -> tuple[Array, Fit]:
         return shares[list(chosen)], fit(e.only([*own, *map(extra, chosen)]))
 
     def error(each: tuple[Array, Fit]) -> float:
-        found = float(np.sum(each[1].squares))
-        return found if math.isfinite(found) else math.inf
+        return float(np.nan_to_num(each[1].error, nan=math.inf))
 
     tried = combinations(range(len(shares)), number)
     apart = (c for c in tried if np.all(np.diff(shares[list(c)]) >= _KNEES_APART))
