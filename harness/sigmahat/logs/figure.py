@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from sigmahat.logs.curve import Answer
 from sigmahat.logs.job import DRAWN, Replay
 from sigmahat.logs.log import Array
-from sigmahat.logs.panels import Estimate, Reduced, curve_panels, quantity_panels, stiffness_panels
+from sigmahat.logs.panels import Reduced, curve_panels, quantity_panels, stiffness_panels
 from sigmahat.logs.sampling import Samples, refused, stretches
 from sigmahat.plotting.figure import draw as draw_panel
 from sigmahat.plotting.figure import label_x
@@ -55,7 +55,7 @@ def _over_time(replay: Replay) -> list[Panel]:
     t = np.repeat(step * np.arange(len(signals["sigma"]), dtype=np.float64), 2)
     pairs = {name: ends.ravel() for name, ends in signals.items()}
     reduced = Reduced(t, pairs, statistics.bucket, (t[0], t[-1]))
-    stiffness = stiffness_panels(reduced, [Estimate("estimate", {"sigma": "sigma"})])
+    stiffness = stiffness_panels(reduced, {"estimate": {"sigma": "sigma"}})
     return [*stiffness, *quantity_panels(reduced, "")]
 
 

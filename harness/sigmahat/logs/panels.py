@@ -83,14 +83,6 @@ SIDES = ("", "_1", "_2")
 """Suffixes of variables: of the joint, or of the sides of an antagonistic pair."""
 
 
-@dataclass(frozen=True)
-class Estimate:
-    """The stiffness of one estimator."""
-
-    label: str
-    signals: Mapping[str, str]  #: Names of its signals by variable, sigma, sigma_1, sigma_2.
-
-
 _QUANTITIES: Mapping[tuple[str, str], Mapping[str, str]] = {
     ("Flexibility torque", plain_axis("tau_e")): {
         "tau_e_residual{}": "by the motor data",
@@ -119,20 +111,22 @@ Noisy signals are first, because they would hide other signals.
 """
 
 
-def stiffness_panels(reduced: Reduced, estimates: Sequence[Estimate]) -> Iterator[Panel]:
-    """Stiffness, and its relative error if the truth was recorded; for each side of a pair."""
+def stiffness_panels(
+    reduced: Reduced, estimates: Mapping[str, Mapping[str, str]]
+) -> Iterator[Panel]:
+    """Stiffness, and its relative error if the truth was recorded; for each side of a pair.
+
+    estimates  by label: names of the signals by variable, sigma, sigma_1, sigma_2
+    """
     for side in SIDES:
-        signals = {
-            each.label: reduced.signals[each.signals[f"sigma{side}"]]
-            for each in estimates
-            if f"sigma{side}" in each.signals
-        }
-        if not signals:
+        labels = [label for label, names in estimates.items() if f"sigma{side}" in names]
+        if not labels:
             continue
-        lines = [
-            Curve(label, color, reduced.t, values, band=_band(values, reduced, side))
-            for (label, values), color in zip(signals.items(), COLORS, strict=False)
-        ]
+        lines = []
+        for label, color in zip(labels, COLORS, strict=False):
+            values = reduced.signals[estimates[label][f"sigma{side}"]]
+            band = _band(values, reduced, side)
+            lines.append(Curve(label, color, reduced.t, values, band=band))
         true = reduced.signals.get(f"plant.sigma{side}")
         truth = [] if true is None else [Curve("true", TRUE, reduced.t, true, width=_WIDE)]
         scale = lines[0].y[len(lines[0].y) // 20 :] if true is None else true

@@ -30,7 +30,6 @@ from sigmahat.logs.job import detected
 from sigmahat.logs.log import Log
 from sigmahat.logs.output import REPLAYED, EstimateTable, Replayed
 from sigmahat.logs.panels import (
-    Estimate,
     curve_panels,
     quantity_panels,
     reduce,
@@ -114,7 +113,7 @@ def from_log(folder: Path) -> Contents:
         ],
         tables,
         [
-            *stiffness_panels(reduced, [Estimate("estimate", {"sigma": "sigma"})]),
+            *stiffness_panels(reduced, {"estimate": {"sigma": "sigma"}}),
             *quantity_panels(reduced, ""),
             *(residual_panels(of_model) if of_model else []),
         ],

@@ -18,7 +18,6 @@ from sigmahat.files.templates import environment
 from sigmahat.logs.estimate import JOINTS
 from sigmahat.logs.panels import (
     SIDES,
-    Estimate,
     of_side,
     quantity_panels,
     reduce,
@@ -52,11 +51,11 @@ def from_reproduction(folder: Path) -> Contents:
     main = _MAIN if _MAIN in files.series else next(iter(files.series))
     signals = dict(files.series[main])
     t = signals.pop(TIME)
-    estimates = []
+    estimates = {}
     for name, own in files.series.items():
         keys = {each: f"{name} {each}" for each in own if _STIFFNESS.fullmatch(each)}
         signals |= {key: own[each] for each, key in keys.items()}
-        estimates.append(Estimate(name, keys))
+        estimates[name] = keys
     reduced = reduce(t, signals)
     seeds = files.table[SEEDS][0].as_py()
     of_seeds = f" of {seeds} seeds; the plots show the first" if seeds > 1 else ""
