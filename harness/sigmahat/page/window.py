@@ -26,7 +26,7 @@ from sigmahat.plotting.style import PAGE
 
 if TYPE_CHECKING:
     from sigmahat.checks.findings import Checked, Finding
-    from sigmahat.report.plots import Plot
+    from sigmahat.plotting.panels import Panel
 
 _NONE = ""
 _TEMPLATES = environment(Path(__file__).parent)
@@ -152,23 +152,23 @@ class ResultPanel:
         curve, points = self._setup.answer.curve, self._setup.answer.points
         if not curve.branches:
             return [words("No curve: the estimator learned nothing from the log.")]
-        made = plots(list(curve_panels(curve, points)), None)
+        panels = list(curve_panels(curve, points))
         # Before identify has chosen its order, the polynomial has more powers than the spring.
         text = "\n".join(curve_text(curve, self._setup.get("rls.n") is not None))
         return [
-            words(_legend(made), overflow_x="auto"),
-            in_grid([plot.figure for plot in made], "30rem"),
+            words(_legend(panels[0]), overflow_x="auto"),
+            in_grid(plots(panels, None), "30rem"),
             words(f"<pre>{escape(text)}</pre>", overflow_x="auto"),
         ]
 
 
-def _legend(made: Sequence[Plot]) -> str:
+def _legend(panel: Panel) -> str:
     """The colours, once for both plots, and what band and points are."""
     labels = "".join(
         f'<span style="color:{curve.color}">&#9632;</span> {escape(curve.label)} &nbsp; '
-        for curve in made[0].panel.curves
+        for curve in panel.curves
     )
-    return f"{labels}<small>{escape(made[0].panel.caption)}</small>"
+    return f"{labels}<small>{escape(panel.caption)}</small>"
 
 
 class FindingsPanel:

@@ -203,9 +203,9 @@ def report(folder: Path) -> str:
 
 def _page(contents: Contents) -> str:
     """The report as HTML."""
-    made = plots([*contents.answer, *contents.panels], contents.every, contents.marks)
-    script, divs = components([plot.figure for plot in made]) if made else ("", [])
-    shown, first = list(zip(made, divs, strict=True)), len(contents.answer)
+    panels, first = [*contents.answer, *contents.panels], len(contents.answer)
+    script, divs = components(plots(panels, contents.every, contents.marks)) if panels else ("", [])
+    shown = list(zip(range(len(panels)), panels, divs, strict=True))
     page = environment(Path(__file__).parent).get_template("page.html")
     return page.render(
         contents=contents,
@@ -213,6 +213,6 @@ def _page(contents: Contents) -> str:
         answer=shown[:first],
         plots=shown[first:],
         pictures=[b64encode(path.read_bytes()).decode() for path in contents.pictures],
-        library=Resources(mode="inline", components=["bokeh"]).render() if made else "",
+        library=Resources(mode="inline", components=["bokeh"]).render() if panels else "",
         script=script,
     )

@@ -4,7 +4,6 @@ The page gives the plots their switches and, through CSS, their colours.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -30,19 +29,13 @@ from sigmahat.plotting.style import with_margin
 _HEIGHT = 300
 
 
-@dataclass(frozen=True)
-class Plot:
-    """A panel that is drawn with Bokeh."""
-
-    panel: Panel
-    figure: figure
-    switches: Sequence[tuple[Curve, str]]  # each curve and the name that all its models have
-
-
 def plots(
     panels: Sequence[Panel], every: tuple[float, float] | None, marks: Sequence[float] = ()
-) -> list[Plot]:
-    """The plots of panels; linked plots have `every` shaded, and dotted lines at `marks`."""
+) -> list[figure]:
+    """The plots of panels; linked plots have `every` shaded, and dotted lines at `marks`.
+
+    All models of curve j of panel i have the name trace-i-j: page.html switches them by it.
+    """
     sources: dict[int, ColumnDataSource] = {}
     times = [curve.x for panel in panels if panel.linked for curve in panel.curves]
     # One object for all linked panels: they zoom together.
@@ -58,12 +51,9 @@ def plots(
             plot.add_layout(
                 Span(location=mark, dimension="height", line_dash="dotted", line_color="#888888")
             )
-        switches = []
         for j, curve in enumerate(panel.curves):
-            name = f"trace-{i}-{j}"
-            _draw(plot, curve, name, sources)
-            switches.append((curve, name))
-        made.append(Plot(panel, plot, switches))
+            _draw(plot, curve, f"trace-{i}-{j}", sources)
+        made.append(plot)
     return made
 
 
