@@ -103,18 +103,12 @@ def _sample(log: Log, configuration: Configuration, T: float) -> Samples:
         if port.delay:
             t = t - port.delay
             notes.append(f"{name}: moved back by {port.delay:g} s")
-        resampled = at_ticks(t, column, T, ticks, configuration.time.longest_gap)
-        if resampled is not None and not np.isfinite(resampled.values).any():
+        values[:, i] = _at_ticks(name, t, column, T, ticks, configuration.time.longest_gap, notes)
+        if not np.isfinite(values[:, i]).any():
             raise LogError(
                 f"port {name}: no sample of its column lies in the {end - start:g} s of the log; "
                 "check its delay, and time.longest_gap"
             )
-        if resampled is None:
-            raise LogError(
-                f"port {name}: its column holds no number; name another column, or remove the port"
-            )
-        notes += _notes(name, resampled, T)
-        values[:, i] = resampled.values
     names = tuple(configuration.ports)
     notes += put_right(values, names, configuration.ports, T)
     notes += _whole_turns(values, names, configuration)
@@ -197,50 +191,30 @@ def _column(log: Log, name: str, port: Port, t: Array, notes: list[str]) -> Arra
     return values
 
 
-def _notes(name: str, resampled: Resampled, T: float) -> Iterator[str]:
-    """What had to be done to the column of a port."""
-    interval, even = resampled.interval, resampled.even
-    if resampled.interpolated:
-        why = "" if even else f", its samples are {interval:.3g} s apart"
-        yield f"{name}: {resampled.interpolated} ticks interpolated{why}"
-    if interval < T * (1 - AT_TICK):
-        yield f"{name}: faster than the ticks, samples between them left out, no filter"
-    elif resampled.between and even:
-        yield f"{name}: {resampled.between} samples between ticks"
-    if resampled.missing and abs(interval / T - 1) < 0.5:
-        yield f"{name}: {resampled.missing} samples missing or not finite"
-
-
-@dataclass(frozen=True)
-class Resampled:
-    """A column at the ticks, and statistics of its samples."""
-
-    values: Array  # values [size: ticks], nan at ticks without a value
-    interval: float  # usual time between two samples [s]
-    even: bool  # whether nearly every tick has a sample
-    interpolated: int = 0  # number of interpolated ticks
-    between: int = 0
-    """Number of samples between ticks, before the first tick, and after the last tick."""
-    missing: int = 0  # number of samples without a time or a value
-
-
-def at_ticks(
-    t: Array, values: Array, T: float, ticks: int, longest_gap: float | None
-) -> Resampled | None:
-    """The values of a column at the ticks; None if the column has no number.
+def _at_ticks(
+    name: str,
+    t: Array,
+    values: Array,
+    T: float,
+    ticks: int,
+    longest_gap: float | None,
+    notes: list[str],
+) -> Array:
+    """The values of the column of a port at the ticks, nan at ticks without a value [size: ticks].
 
     t            times since the first tick [s], increasing; nan where unknown; [size: samples]
     values       [size: samples], nan where a sample is missing
-    T            time between ticks [s]
     longest_gap  longest time between two samples to interpolate over [s]; None: see above
     """
     finite = np.isfinite(t) & np.isfinite(values)
     if not finite.any():
-        return None
+        raise LogError(
+            f"port {name}: its column holds no number; name another column, or remove the port"
+        )
     if not finite.all():
         t, values = t[finite], values[finite]
     if longest_gap is None and len(t) == ticks and _one_for_each_tick(t, T):
-        return Resampled(values, T, True)  # the usual case, with the least memory
+        return values  # the usual case, with the least memory
     position = t / T
     nearest = np.round(position)
     at = (np.abs(position - nearest) <= AT_TICK) & (nearest >= 0) & (nearest < ticks)
@@ -256,14 +230,16 @@ def at_ticks(
     empty, after = empty[inside], after[inside]
     empty = empty[t[after] - t[after - 1] <= longest_gap * (1 + AT_TICK)]
     resampled[empty] = np.interp(empty.astype(np.float64), position, values)
-    return Resampled(
-        resampled,
-        interval,
-        even,
-        interpolated=len(empty),
-        between=int(np.count_nonzero(~at)),
-        missing=len(finite) - len(t),
-    )
+    if len(empty):
+        why = "" if even else f", its samples are {interval:.3g} s apart"
+        notes.append(f"{name}: {len(empty)} ticks interpolated{why}")
+    if interval < T * (1 - AT_TICK):
+        notes.append(f"{name}: faster than the ticks, samples between them left out, no filter")
+    elif even and not at.all():
+        notes.append(f"{name}: {np.count_nonzero(~at)} samples between ticks")
+    if len(t) < len(finite) and abs(interval / T - 1) < 0.5:
+        notes.append(f"{name}: {len(finite) - len(t)} samples missing or not finite")
+    return resampled
 
 
 def _one_for_each_tick(t: Array, T: float) -> bool:
