@@ -25,7 +25,7 @@ from sigmahat.logs.configuration import Configuration, Port
 from sigmahat.logs.learned import Learned, go_on, write_learned
 from sigmahat.logs.log import LogError
 from sigmahat.logs.replay import gap, parameters
-from sigmahat.logs.sampling import AT_TICK, counter_period, turns_from
+from sigmahat.logs.sampling import AT_TICK, counter, turns_from
 from sigmahat.logs.units import scale, seconds
 
 OUTPUTS = ("sigma", "sigma_std", "tau_e", "tau_e_std", "phi", "setPoint", "misfit", "change_age")
@@ -236,11 +236,8 @@ class _Counter:
     def __init__(self, configuration: Configuration) -> None:
         self._ports = configuration.ports
         self._most = configuration.parameters.get("range.phi")
-        both = [name for name in ("theta", "q") if name in self._ports]
-        periods = {name: counter_period(name, self._ports[name]) for name in both}
-        both.sort(key=periods.__getitem__)
+        both, self._period = counter(self._ports)
         self._both = [list(self._ports).index(name) for name in both]  # what is put right is first
-        self._period = periods[both[0]] if len(both) == 2 else math.inf
         self._last: NDArray[Any] | None = None
         self._was_missing = False
         self._total = self._at_start = 0
@@ -255,8 +252,7 @@ class _Counter:
             if self._last is None:
                 if self._most is not None:
                     row, most = values.reshape(1, -1), float(self._most)
-                    names = tuple(self._ports)
-                    _, self._at_start = turns_from(0.0, most, row, names, self._ports)
+                    _, self._at_start = turns_from(0.0, most, row, self._ports)
             elif self._was_missing:
                 step, other_step = now - self._last
                 self._total += round((other_step - step) / self._period)

@@ -109,11 +109,10 @@ def _sample(log: Log, configuration: Configuration, T: float) -> Samples:
                 f"port {name}: no sample of its column lies in the {end - start:g} s of the log; "
                 "check its delay, and time.longest_gap"
             )
-    names = tuple(configuration.ports)
-    notes += put_right(values, names, configuration.ports, T)
-    notes += _whole_turns(values, names, configuration)
+    notes += _put_right(values, configuration.ports, T)
+    notes += _whole_turns(values, configuration)
     notes += _skipped(values, T)
-    return Samples(T, names, values, _tick_of(rows, T, ticks), notes)
+    return Samples(T, tuple(configuration.ports), values, _tick_of(rows, T, ticks), notes)
 
 
 def _tick_of(rows: Array, T: float, ticks: int) -> NDArray[np.int32] | None:
@@ -283,9 +282,7 @@ def _skipped(values: Array, T: float) -> Iterator[str]:
     )
 
 
-def put_right(
-    values: Array, names: Sequence[str], ports: Mapping[str, Port], T: float
-) -> Iterator[str]:
+def _put_right(values: Array, ports: Mapping[str, Port], T: float) -> Iterator[str]:
     """Moves theta or q behind gaps by whole periods of its counter, so that it went as far as the
     other one. Motor and link go together, but for the deformation.
 
@@ -294,14 +291,10 @@ def put_right(
 
     Yields what was done, in sentences.
     """
-    if not {"theta", "q"} <= set(names):
+    both, period = counter(ports)
+    if not np.isfinite(period):
         return
-    both = [list(names).index(name) for name in ("theta", "q")]
-    periods = [counter_period(name, ports[name]) for name in ("theta", "q")]
-    own = int(np.argmin(periods))  # the other counter starts again later, or never
-    if not np.isfinite(periods[own]):
-        return
-    column, other, period = both[own], both[1 - own], periods[own]
+    column, other = (list(ports).index(name) for name in both)
     begins, ends = stretches(np.isfinite(values[:, column]) & np.isfinite(values[:, other]))
     steps = values[begins[1:]] - values[ends[:-1] - 1]
     turns = np.round((steps[:, other] - steps[:, column]) / period).astype(np.int64)
@@ -312,60 +305,63 @@ def put_right(
         t = (ends[moved[0]] - 1) * T
         also = f" and during {len(moved) - 1} more" if len(moved) > 1 else ""
         yield (
-            f"{names[column]}: {turns[moved[0]]:+d} periods of its counter during the gap after "
+            f"{both[0]}: {turns[moved[0]]:+d} periods of its counter during the gap after "
             f"{t:.6g} s{also}, by the motion of the other encoder"
         )
 
 
-def _whole_turns(
-    values: Array, names: Sequence[str], configuration: Configuration
-) -> Iterator[str]:
+def _whole_turns(values: Array, configuration: Configuration) -> Iterator[str]:
     """Moves theta or q by whole periods of its counter, so that the deformation is in range.phi.
 
     A counter that was switched on in another turn is that far off. Nothing moves without range.phi
     in the configuration, nor where the deformation stays beyond it.
 
-    values  as in put_right, after it
+    values  as in _put_right, after it
     """
     phi_most = configuration.parameters.get("range.phi")
     if phi_most is None:
         return
-    name, turns = turns_from(0.0, float(phi_most), values, names, configuration.ports)
+    name, turns = turns_from(0.0, float(phi_most), values, configuration.ports)
     if turns:
-        values[:, list(names).index(name)] += turns * counter_period(
-            name, configuration.ports[name]
-        )
+        _, period = counter(configuration.ports)
+        values[:, list(configuration.ports).index(name)] += turns * period
         yield f"{name}: {turns:+d} periods of its counter, so that the deformation is in range.phi"
 
 
 def turns_from(
-    center: float, most: float, values: Array, names: Sequence[str], ports: Mapping[str, Port]
+    center: float, most: float, values: Array, ports: Mapping[str, Port]
 ) -> tuple[str, int]:
     """The port that wraps, theta or q, and by how many periods it has to move; 0 if by none.
 
     It moves if the median of the deformation is further than most from center, and then no more.
 
     center, most  [rad]
-    values        as in put_right, after it
+    values        of the ports at the ticks [size: ticks x ports], nan where there is none
     """
-    if not {"theta", "q"} <= set(names):
+    both, period = counter(ports)
+    if not np.isfinite(period):
         return "", 0
-    theta, q = (list(names).index(name) for name in ("theta", "q"))
+    theta, q = (list(ports).index(name) for name in ("theta", "q"))
     phi = values[:, q] - values[:, theta]
     phi = phi[np.isfinite(phi)]
-    periods = {name: counter_period(name, ports[name]) for name in ("theta", "q")}
-    name = min(periods, key=lambda each: periods[each])
-    if not len(phi) or not np.isfinite(periods[name]):
+    if not len(phi):
         return "", 0
     away = float(np.median(phi)) - center
-    turns = round(away / periods[name])
-    if abs(away - turns * periods[name]) <= most < abs(away):
-        return name, turns if name == "theta" else -turns
-    return name, 0
+    turns = round(away / period)
+    if abs(away - turns * period) <= most < abs(away):
+        return both[0], turns if both[0] == "theta" else -turns
+    return both[0], 0
 
 
-def counter_period(name: str, port: Port) -> float:
-    """Angle after which a counter starts again [rad]; inf if it does not."""
-    if port.wrap is None:
-        return np.inf
-    return float(abs(factor(name, port) * port.wrap / port.gear_ratio))
+def counter(ports: Mapping[str, Port]) -> tuple[Sequence[str], float]:
+    """The ports theta and q, first the one whose counter starts again after the smaller angle.
+
+    Returns this angle as well [rad]; inf if no counter starts again, or theta or q is missing.
+    """
+    angles = {name: np.inf for name in ("theta", "q") if name in ports}
+    for name in angles:
+        port = ports[name]
+        if port.wrap is not None:
+            angles[name] = abs(factor(name, port) * port.wrap / port.gear_ratio)
+    both = sorted(angles, key=angles.__getitem__)
+    return both, angles[both[0]] if len(both) == 2 else np.inf

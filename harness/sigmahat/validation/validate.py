@@ -289,7 +289,7 @@ def _turned(
         return None
     low, high = min(low for low, _ in ranges), max(high for _, high in ranges)
     center, most = (low + high) / 2, high - low
-    name, turns = turns_from(center, most, samples.values, samples.names, configuration.ports)
+    name, turns = turns_from(center, most, samples.values, configuration.ports)
     if not turns:
         return None
     return (
