@@ -12,9 +12,10 @@ A variable is a sequence of such elements again.
 import struct
 import zlib
 from collections.abc import Iterator
+from contextlib import suppress
 from itertools import chain
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,9 +24,8 @@ from sigmahat.logs.log import LogError, LogInMemory, check_bytes, check_columns,
 
 _MATRIX, _COMPRESSED = 14, 15
 _KINDS = {*range(1, 8), 9, 12, 13, _MATRIX, 16, 17, 18}  # numbers, matrices, text
-_HEAD, _TAG = 128, 8  # bytes
-_AT_A_TIME = 1 << 20
-_PIECE = 1 << 16  # of the file
+_HEAD = 128  # bytes
+_PIECE = 1 << 16  # bytes of the file that are unpacked at a time
 _MOST = 300_000_000  # bytes
 _MOST_OF_PARTS = 80_000_000  # of structures and cells: 8 bytes can become an object of 100 bytes
 _MOST_ELEMENTS = 1_000_000
@@ -34,6 +34,8 @@ _NUMBERS = {"double", "single", "logical"} | {
 }
 _MOST_PER_BYTE = 8  # of the file
 
+Buffer = bytes | bytearray
+
 
 def check_packed(path: Path) -> None:
     """Raises LogError for a file that is far larger without compression, or has unknown elements.
@@ -41,75 +43,58 @@ def check_packed(path: Path) -> None:
     scipy reports other damage.
     """
     size = path.stat().st_size
-    most, unpacked = max(_MOST if _is_plain(path) else _MOST_OF_PARTS, _MOST_PER_BYTE * size), 0
-    elements = 0
+    most = max(_MOST if _is_plain(path) else _MOST_OF_PARTS, _MOST_PER_BYTE * size)
+    unpacked = elements = 0
     with path.open("rb") as file:
         head = file.read(_HEAD)
-        order = ">" if head[126:128] == b"MI" else "<"
-        while len(tag := file.read(_TAG)) == _TAG:
-            kind, length = struct.unpack(f"{order}II", tag)
-            end = file.tell() + length
-            packed, variable = kind == _COMPRESSED, _Elements(order)
-            for piece in _pieces(file, length, packed=packed):
-                unpacked += len(piece) if packed else 0
-                if unpacked > most:
+        tag = struct.Struct(">II" if head[126:128] == b"MI" else "<II")
+        while len(begin := file.read(tag.size)) == tag.size:
+            kind, length = tag.unpack(begin)
+            variable: Buffer = file.read(min(length, size))
+            if kind == _COMPRESSED:
+                variable = _unpacked(variable, most - unpacked)
+                unpacked += len(variable)
+            if unpacked > most:
+                raise LogError(
+                    f"{path}: more than {most / 1e6:.0f} MB in a file of {size / 1e6:.3g} MB; "
+                    "save it without compression (-v6), or in parts"
+                )
+            for found in _kinds(variable, tag):
+                elements += 1
+                if found not in _KINDS:
                     raise LogError(
-                        f"{path}: more than {most / 1e6:.0f} MB in a file of {size / 1e6:.3g} MB; "
-                        "save it without compression (-v6), or in parts"
+                        f"{path}: damaged MAT file (no element is of the kind {found}); "
+                        "save it again"
                     )
-                for found in variable.kinds(piece):
-                    elements += 1
-                    if found not in _KINDS:
-                        raise LogError(
-                            f"{path}: damaged MAT file (no element is of the kind {found}); "
-                            "save it again"
-                        )
                 if elements > _MOST_ELEMENTS:
                     raise LogError(
                         f"{path}: more than {_MOST_ELEMENTS} cells and fields; "
                         "save the columns as vectors"
                     )
-            file.seek(end)
 
 
-class _Elements:
-    """The elements of one variable, which is read in pieces."""
-
-    def __init__(self, order: str) -> None:
-        self._tag = struct.Struct(f"{order}II")
-        self._rest = b""  # begins with a tag
-        self._skip = 0  # bytes of an element that are not read yet
-
-    def kinds(self, piece: bytes) -> Iterator[int]:
-        """The kinds of the elements whose tags are complete with this piece."""
-        if self._skip >= len(piece):
-            self._skip -= len(piece)
-            return
-        data, at = self._rest + piece[self._skip :], 0
-        while len(data) - at >= _TAG:
-            kind, length = self._tag.unpack_from(data, at)
-            at += _TAG
-            if kind >> 16:  # up to four bytes in the tag itself
-                kind &= 0xFFFF
-            elif kind != _MATRIX:  # the elements of a matrix follow
-                at += -(-length // 8) * 8
-            yield kind
-        self._rest, self._skip = data[at:], max(0, at - len(data))
+def _unpacked(packed: Buffer, most: int) -> Buffer:
+    """The bytes up to the first damage, which scipy reports; not many more than most."""
+    unpack, found = zlib.decompressobj(), bytearray()
+    with suppress(zlib.error):
+        for first in range(0, len(packed), _PIECE):
+            found += unpack.decompress(packed[first : first + _PIECE])
+            if len(found) > most:
+                break
+    return found
 
 
-def _pieces(file: IO[bytes], length: int, *, packed: bool) -> Iterator[bytes]:
-    """The next bytes of a file, unpacked, up to the first damage."""
-    unpack = zlib.decompressobj()
-    try:
-        while length > 0 and (piece := file.read(min(length, _PIECE))):
-            length -= len(piece)
-            if not packed:
-                yield piece
-            while packed and piece:
-                yield unpack.decompress(piece, _AT_A_TIME)
-                piece = unpack.unconsumed_tail
-    except zlib.error:
-        pass  # scipy reports the damage
+def _kinds(variable: Buffer, tag: struct.Struct) -> Iterator[int]:
+    """The kinds of the elements of a variable."""
+    at = 0
+    while at + tag.size <= len(variable):
+        kind, length = tag.unpack_from(variable, at)
+        at += tag.size
+        if kind >> 16:  # up to four bytes in the tag itself
+            kind &= 0xFFFF
+        elif kind != _MATRIX:  # the elements of a matrix follow
+            at += -(-length // 8) * 8
+        yield kind
 
 
 def _is_plain(path: Path) -> bool:
