@@ -61,9 +61,6 @@ def write_whole(text: str, path: Path) -> None:
         raise OSError(error.errno, error.strerror, str(path)) from error
 
 
-_CHUNK = 1 << 20
-
-
 def write_json(values: object, path: Path) -> None:
     """Writes JSON, numbers with all digits; a number that is not finite becomes null."""
     text = json.dumps(finite(values), indent=1, allow_nan=False)
@@ -96,6 +93,6 @@ def sha256(path: Path) -> str:
 def _of_file(path: Path) -> str:
     digest = hashlib.sha256()
     with path.open("rb") as file:
-        while chunk := file.read(_CHUNK):
+        while chunk := file.read(1 << 20):
             digest.update(chunk)
     return digest.hexdigest()

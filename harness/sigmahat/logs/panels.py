@@ -66,13 +66,10 @@ def _extremes(x: NDArray[np.float32], starts: NDArray[np.intp], end: int) -> NDA
     padded = np.full(len(starts) * bucket, np.nan, dtype=np.float32)
     padded[: end - starts[0]] = x[starts[0] : end]
     table = padded.reshape(len(starts), bucket)
-    empty = np.isnan(table).all(axis=1)
     low = np.where(np.isnan(table), np.inf, table).argmin(axis=1)
     high = np.where(np.isnan(table), -np.inf, table).argmax(axis=1)
     order = np.column_stack([np.minimum(low, high), np.maximum(low, high)])
-    values = np.take_along_axis(table, order, axis=1)
-    values[empty] = np.nan
-    flat: NDArray[np.float32] = values.ravel()
+    flat: NDArray[np.float32] = np.take_along_axis(table, order, axis=1).ravel()
     return flat
 
 

@@ -24,7 +24,7 @@ from bokeh.plotting import figure
 from numpy.typing import NDArray
 
 from sigmahat.plotting.panels import Curve, Kind, Panel
-from sigmahat.plotting.style import with_margin
+from sigmahat.plotting.style import around
 
 _HEIGHT = 300
 
@@ -70,15 +70,14 @@ def _y_limits(panel: Panel) -> tuple[float, float]:
 
 def _limits(values: Sequence[NDArray[Any]], log: bool) -> tuple[float, float]:
     """Least and greatest with a margin; of positive values only on a logarithmic scale."""
-    every = np.concatenate([np.asarray(v, dtype=np.float64) for v in values])
-    every = every[np.isfinite(every) & ((every > 0) | (not log))]
-    if not len(every):
-        return (0.1, 1.0) if log else (0.0, 1.0)
-    low, high = float(every.min()), float(every.max())
-    if log:
-        ratio = (high / low) ** 0.06 if high > low else 2.0
-        return low / ratio, high * ratio
-    return with_margin(low, high, 0.06)
+    if not log:
+        return around(values, 0.06) or (0.0, 1.0)
+    positive = np.concatenate([v[np.isfinite(v) & (v > 0)] for v in values])
+    if not len(positive):
+        return 0.1, 1.0
+    low, high = float(positive.min()), float(positive.max())
+    ratio = (high / low) ** 0.06 if high > low else 2.0
+    return low / ratio, high * ratio
 
 
 def _figure(panel: Panel, linked: Range1d) -> figure:
