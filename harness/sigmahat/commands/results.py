@@ -91,7 +91,8 @@ def _estimated(
     """Writes the files of a joint. Returns its estimate and the result of the checks."""
     from sigmahat.checks.check import check
     from sigmahat.checks.text import rows
-    from sigmahat.report.from_log import estimated
+    from sigmahat.files.output import output_folder
+    from sigmahat.logs import estimate as job
 
     opened, configuration = common.opened(log, config, joint)
     # The figure needs this import, which can run meanwhile: the replay is mostly C code.
@@ -99,10 +100,9 @@ def _estimated(
     checked = check(opened, configuration)
     if start_from is not None and start_from.is_dir():
         start_from /= joint
-    ours = rows(checked), out / joint
-    with common.progress("Replaying", 1000) as bar:
-        result = estimated(opened, configuration, *ours, bar.update, start_from, mcap=to == "mcap")
-    return result, checked
+    with common.progress("Replaying", 1000) as bar, output_folder(out / joint) as folder:
+        options = start_from, to == "mcap", rows(checked)
+        return job.estimate(opened, configuration, folder, bar.update, *options), checked
 
 
 def _import(module: str) -> None:

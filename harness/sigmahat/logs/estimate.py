@@ -114,13 +114,15 @@ def estimate(
     progress: Callable[[int], object] = lambda thousandths: None,
     start_from: str | Path | None = None,
     mcap: bool = False,
+    findings: list[tuple[str, str]] | None = None,
 ) -> Estimate:
     """Replays the log. Without a folder the outputs at all ticks are in the result, as `series`.
 
     With a folder, which exists, it writes into it: the table (estimate.csv or .parquet), the curve
     (estimate.curve.csv) and its measured points (estimate.points.csv), the figure
     (estimate.png and .svg), the data sheet of the joint (joint.json), what was learned
-    (state.json), and notes for the report (estimate.json); with mcap also estimate.mcap.
+    (state.json), and notes for the report (estimate.json), also with findings of the checks:
+    severity and sentence of each; with mcap also estimate.mcap.
 
     Now and then progress is called with the thousandths of the log done since the last call.
     With start_from, a folder of results or its state.json, the estimator starts from this state.
@@ -139,11 +141,15 @@ def estimate(
             t = replay.samples.T * np.arange(len(replay.samples.values), dtype=np.float64)
             series = Series.of(slave.fmu, values, replay.every, t)
             return replace(_result(replay, replay.answer().curve), series=series)
-        return _written(replay, Path(folder), progress, mcap)
+        return _written(replay, Path(folder), progress, mcap, findings)
 
 
 def _written(
-    replay: Replay, folder: Path, progress: Callable[[int], object], mcap: bool
+    replay: Replay,
+    folder: Path,
+    progress: Callable[[int], object],
+    mcap: bool,
+    findings: list[tuple[str, str]] | None,
 ) -> Estimate:
     """The result, after all files are written."""
     fmu = replay.slave.fmu
@@ -162,7 +168,7 @@ def _written(
     write_curve(answered.curve, folder / CURVE)
     write_points(answered.points, folder / POINTS)
     notes = [*result.notes, *(each.in_words for each in result.changes)]
-    about = (str(result.log), result.ticks, result.skipped, result.T, notes)
+    about = (str(result.log), result.ticks, result.skipped, result.T, notes, findings)
     write_json(asdict(Replayed(REPLAYED.name, REPLAYED.version, *about)), folder / REPLAYED.file)
     _save_figure(replay, answered, folder)
     return result

@@ -168,10 +168,11 @@ class Jobs:
         """Writes the results, and gives the setup the configuration with what was identified."""
         from sigmahat.checks.check import check
         from sigmahat.checks.text import rows
+        from sigmahat.files.output import output_folder
         from sigmahat.identification.identify import identify
         from sigmahat.identification.write import update
         from sigmahat.logs.configuration import checked_configuration
-        from sigmahat.report.from_log import estimated
+        from sigmahat.logs.estimate import estimate
 
         setup, document = self._setup, tomlkit.parse(text)
         out = Path("sigmahat-results", setup.log.path.stem, setup.joint)
@@ -181,7 +182,9 @@ class Jobs:
                 update(document, found)
             self._later(partial(self._show, version, busy="Estimating ..."))
             configuration = checked_configuration(document, setup.path)
-            estimated(setup.log, configuration, rows(check(setup.log, configuration)), out)
+            findings = rows(check(setup.log, configuration))
+            with output_folder(out) as folder:
+                estimate(setup.log, configuration, folder, findings=findings)
         except _REFUSED as error:
             self._later(partial(self._refused, version, str(error).removeprefix(f"{setup.path}: ")))
         else:

@@ -1,15 +1,14 @@
-"""The files of `sigmahat estimate` with the findings of the checks, and a report from the files."""
+"""A report from the files of `sigmahat estimate`."""
 
 from collections import Counter
-from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from datetime import datetime
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sigmahat.files.output import output_folder, write_json
 from sigmahat.files.tables import read_csv
 from sigmahat.joint import sheet
 from sigmahat.joint.curve import (
@@ -22,12 +21,9 @@ from sigmahat.joint.curve import (
     stiffness_table,
 )
 from sigmahat.joint.sheet import Sheet
-from sigmahat.logs import estimate as estimation
-from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.curve import POINTS, MeasuredPoints, read_points
 from sigmahat.logs.estimate import JOINTS
 from sigmahat.logs.job import detected
-from sigmahat.logs.log import Log
 from sigmahat.logs.output import REPLAYED, EstimateTable, Replayed
 from sigmahat.logs.panels import (
     curve_panels,
@@ -39,30 +35,6 @@ from sigmahat.logs.panels import (
 from sigmahat.plotting.style import plain_text, plain_title, plain_unit
 from sigmahat.report.contents import Contents, TextTable, number, of_file
 from sigmahat.report.residuals import residual_panels, residuals
-
-
-def estimated(
-    log: Log,
-    configuration: Configuration,
-    findings: Sequence[tuple[str, str]],
-    out: Path,
-    progress: Callable[[int], object] = lambda thousandths: None,
-    start_from: Path | None = None,
-    mcap: bool = False,
-) -> estimation.Estimate:
-    """Returns the estimate, and writes estimate and findings into out: all files, or no file.
-
-    findings  of the checks: severity and sentence
-    mcap      whether estimate.mcap is written, too
-
-    Raises what `estimate` raises, OSError if out cannot be written to.
-    """
-    with output_folder(out) as folder:
-        result = estimation.estimate(log, configuration, folder, progress, start_from, mcap)
-        replayed = replace(REPLAYED.read(folder), findings=list(findings))
-        write_json(asdict(replayed), folder / REPLAYED.file)
-    return result
-
 
 _OF_THE_METHOD = ("a", "rho")  # inner outputs of the method, which are not in the table
 
