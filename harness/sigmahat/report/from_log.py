@@ -25,13 +25,7 @@ from sigmahat.logs.curve import POINTS, MeasuredPoints, read_points
 from sigmahat.logs.estimate import JOINTS
 from sigmahat.logs.job import detected
 from sigmahat.logs.output import REPLAYED, EstimateTable, Replayed
-from sigmahat.logs.panels import (
-    curve_panels,
-    quantity_panels,
-    reduce,
-    sampling,
-    stiffness_panels,
-)
+from sigmahat.logs.panels import curve_panels, quantity_panels, reduce, sampling, stiffness_panels
 from sigmahat.plotting.style import plain_text, plain_title, plain_unit
 from sigmahat.report.contents import Contents, TextTable, number, of_file
 from sigmahat.report.residuals import residual_panels, residuals

@@ -16,14 +16,7 @@ from numpy.typing import NDArray
 from sigmahat.files.tables import read_csv
 from sigmahat.files.templates import environment
 from sigmahat.logs.estimate import JOINTS
-from sigmahat.logs.panels import (
-    SIDES,
-    of_side,
-    quantity_panels,
-    reduce,
-    sampling,
-    stiffness_panels,
-)
+from sigmahat.logs.panels import SIDES, of_side, quantity_panels, reduce, sampling, stiffness_panels
 from sigmahat.paper.reproduction import SEEDS, TABLE, TIME, read_result_files
 from sigmahat.plotting.panels import COLORS, TRUE, Curve, Kind, Panel
 from sigmahat.plotting.style import PAGE, QUANTITIES, plain_axis
