@@ -102,15 +102,9 @@ def go_on(slave: Slave, learned: Learned, every: Mapping[str, Value], configurat
         t_0 = slave.restore(learned.state)
     except FmuError as error:
         raise LogError(f"{learned.path}: damaged: {error}; {_AGAIN}") from error
-    _compare(learned, _parameters(slave), every, configuration)
+    names = [name for name, v in slave.fmu.variables.items() if v.causality == "parameter"]
+    _compare(learned, present_values(slave, names), every, configuration)
     return gap(slave, t_0, every)
-
-
-def _parameters(slave: Slave) -> dict[str, Value]:
-    """All parameters, read from the FMU itself."""
-    fmu = slave.fmu
-    names = [name for name, v in fmu.variables.items() if v.causality == "parameter"]
-    return present_values(slave, names)
 
 
 def _compare(
@@ -124,10 +118,6 @@ def _compare(
     name = min(differ, key=lambda each: order.get(each, 2))
     more = f" (and {len(differ) - 1} more)" if len(differ) > 1 else ""
     raise LogError(
-        f"{configuration}: {name} = {_shown(ours[name])}, but {learned.path} was learned with "
-        f"{_shown(theirs[name])}{more}; {_OTHER}"
+        f"{configuration}: {name} = {ours[name]}, but {learned.path} was learned with "
+        f"{theirs[name]}{more}; {_OTHER}"
     )
-
-
-def _shown(value: Value) -> str:
-    return value if isinstance(value, str) else repr(value)
