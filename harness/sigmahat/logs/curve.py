@@ -207,7 +207,7 @@ def reaches(points: MeasuredPoints, before: Sequence[LearnedLog], one_curve: boo
             and (one_curve or each.set_point[0] <= setting <= each.set_point[1])
             and (one_curve or not ranges or each.set_point[0] == each.set_point[1])
         ]
-        if phi := _union(ranges):
+        if phi := union(ranges):
             found.append(Reach(setting, phi))
     return found
 
@@ -249,7 +249,7 @@ def curve(
     logs    from which the slave has learned; the last is the present log
     points  of the last log
     """
-    covered = _union([log.phi for log in logs]), _union([log.set_point for log in logs])
+    covered = union([log.phi for log in logs]), union([log.set_point for log in logs])
     polynomial = sheet.polynomial(sheet.start_values(slave, every), *covered)
     reach = reaches(points, logs[:-1], not polynomial.is_of_set_point)
     grids = [_grid(each, polynomial) for each in reach]
@@ -269,7 +269,8 @@ def curve(
     return Curve(polynomial, [Branch(r.set_point, r.phi, *values) for r, *values in each])
 
 
-def _union(ranges: Sequence[Range | None]) -> Range | None:
+def union(ranges: Sequence[Range | None]) -> Range | None:
+    """From the least to the largest value of all ranges; None without a range."""
     found = [each for each in ranges if each is not None]
     return (min(low for low, _ in found), max(high for _, high in found)) if found else None
 

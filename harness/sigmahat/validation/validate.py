@@ -17,7 +17,7 @@ from sigmahat.joint import sheet
 from sigmahat.joint.curve import NORMAL_95
 from sigmahat.joint.stored import LearnedLog
 from sigmahat.logs.configuration import Configuration
-from sigmahat.logs.curve import stiffness_at
+from sigmahat.logs.curve import stiffness_at, union
 from sigmahat.logs.job import Replay
 from sigmahat.logs.learned import read_learned
 from sigmahat.logs.log import Array, Log, LogError
@@ -126,25 +126,23 @@ def agreement(
     torque_gain  relative standard deviation of the gain of the torque: both estimates have the same
                  error of this gain, which does not explain a difference
     """
-    difference = alone["sigma"] - before["sigma"]
-    halves = [NORMAL_95 * each["sigma_std"] for each in (before, alone)]
-    by_gain = [torque_gain * e["sigma_per_gain"] * np.abs(e["sigma"]) for e in (before, alone)]
-    both = zip((before, alone), by_gain, strict=True)
-    own = [np.maximum(e["sigma_std"] ** 2 - g**2, 0.0) for e, g in both]
-    std = np.sqrt(own[0] + own[1] + (by_gain[1] - by_gain[0]) ** 2)
+    names = ("sigma", "sigma_std", "sigma_per_gain")
+    sigma, std, per_gain = (np.stack([before[name], alone[name]]) for name in names)
+    difference = sigma[1] - sigma[0]
+    half = NORMAL_95 * std
+    by_gain = torque_gain * per_gain * np.abs(sigma)
+    own = np.maximum(std**2 - by_gain**2, 0.0)
+    of_difference = np.sqrt(own[0] + own[1] + (by_gain[1] - by_gain[0]) ** 2)
     with np.errstate(divide="ignore", invalid="ignore"):
-        ratio = np.where(difference == 0, 0.0, difference / std)
+        ratio = np.where(difference == 0, 0.0, difference / of_difference)
     z = float(np.sqrt(np.mean(ratio**2)))
-    pairs = list(zip(halves, (before, alone), strict=True))
-    says_nothing = any(np.median(half - np.abs(each["sigma"])) >= 0 for half, each in pairs)
-    first, second = (
-        (float(np.median(each["sigma"])), float(np.median(half))) for half, each in pairs
-    )
-    widths = (*halves, halves[0] + halves[1])
+    says_nothing = bool(np.any(np.median(half - np.abs(sigma), axis=1) >= 0))
+    values, halves = np.median(sigma, axis=1).tolist(), np.median(half, axis=1).tolist()
+    first, second = zip(values, halves, strict=True)
     alone_in_before, before_in_alone, overlap = (
-        float(np.mean(np.abs(difference) <= half)) for half in widths
+        float(np.mean(np.abs(difference) <= width)) for width in (*half, half[0] + half[1])
     )
-    agree = None if says_nothing else bool(z <= NORMAL_95)
+    agree = None if says_nothing else z <= NORMAL_95
     return Agreement(first, second, alone_in_before, before_in_alone, overlap, z, agree)
 
 
@@ -284,10 +282,10 @@ def _turned(
     samples: Samples, configuration: Configuration, logs: Sequence[LearnedLog]
 ) -> str | None:
     """A sentence if the deformation differs from `logs` by whole periods of a counter."""
-    ranges = [each.phi for each in logs if each.phi is not None]
-    if not ranges:
+    reach = union([each.phi for each in logs])
+    if reach is None:
         return None
-    low, high = min(low for low, _ in ranges), max(high for _, high in ranges)
+    low, high = reach
     center, most = (low + high) / 2, high - low
     name, turns = turns_from(center, most, samples.values, configuration.ports)
     if not turns:
