@@ -246,8 +246,8 @@ class EstimateTable(Mapping[str, NDArray[np.float64]]):
         for batch in self._log.batches([self._doubt], _ROWS):
             later = batch.column(0).slice(min(left, len(batch)))
             left -= len(batch) - len(later)
-            counted = later.value_counts()
-            found.update(dict(zip(*(counted.field(i).to_pylist() for i in (0, 1)), strict=True)))
+            counted = later.value_counts().to_pylist()
+            found.update({each["values"]: each["counts"] for each in counted})
         return found
 
 

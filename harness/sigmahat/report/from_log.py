@@ -140,7 +140,8 @@ def _estimates(signals: EstimateTable, used: NDArray[np.bool_]) -> TextTable:
     rows = []
     for name in signals:
         if name not in _OF_THE_METHOD:
-            values, own = signals[name], signals[name][late]
+            values = signals[name]
+            own = values[late]
             range_and_rms = [own.min(), own.max(), np.sqrt(np.mean(own**2))] if len(own) else []
             cells = [values[-1], *(range_and_rms or [np.nan] * 3)]
             title = plain_title(name, signals.units[name])
