@@ -48,7 +48,7 @@ def reduce(t: NDArray[Any], signals: Mapping[str, NDArray[Any]], budget: int = B
     reduced = {}
     for name, values in signals.items():
         x = np.asarray(values, dtype=np.float32)
-        before, after = _extremes(x, parts[0], first), _extremes(x, parts[1], len(t))
+        before, after = _extremes(x[:first], bucket), _extremes(x[last:], bucket)
         reduced[name] = np.concatenate([before, x[first:last], after])
     common = np.concatenate([times[0], t[first:last], times[1]])
     return Reduced(common, reduced, bucket, (float(t[first]), float(t[last - 1])))
@@ -60,12 +60,9 @@ def _twice(t: NDArray[np.float64], starts: NDArray[np.intp]) -> NDArray[np.float
     return np.column_stack([t[starts], (t[starts] + ends) / 2]).ravel()
 
 
-def _extremes(x: NDArray[np.float32], starts: NDArray[np.intp], end: int) -> NDArray[np.float32]:
-    """Least and greatest of x from each start to the next, the earlier of the two first."""
-    bucket = int(starts[1] - starts[0]) if len(starts) > 1 else end - int(starts[0])
-    padded = np.full(len(starts) * bucket, np.nan, dtype=np.float32)
-    padded[: end - starts[0]] = x[starts[0] : end]
-    table = padded.reshape(len(starts), bucket)
+def _extremes(x: NDArray[np.float32], bucket: int) -> NDArray[np.float32]:
+    """Least and greatest of each bucket, the earlier of the two first."""
+    table = np.pad(x, (0, -len(x) % bucket), constant_values=np.nan).reshape(-1, bucket)
     low = np.where(np.isnan(table), np.inf, table).argmin(axis=1)
     high = np.where(np.isnan(table), -np.inf, table).argmax(axis=1)
     order = np.column_stack([np.minimum(low, high), np.maximum(low, high)])
