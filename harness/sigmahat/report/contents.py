@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -24,8 +24,7 @@ class TextTable:
     title: str
     head: Sequence[str]
     rows: Sequence[Sequence[str]]
-    words: Sequence[bool]
-    """For each column, whether its cells are words, aligned to the left, and not numbers."""
+    words: Container[int] = (0,)  # columns with words, aligned to the left, and not numbers
     note: str = ""  # text below the table
     folded: bool = False  # whether only its title is shown at first
 
@@ -65,5 +64,5 @@ def of_file(title: str, table: pa.Table) -> TextTable:
         title,
         [plain_title(*name_and_unit(name)) for name in table.column_names],
         list(zip(*columns, strict=True)),
-        [pa.types.is_string(field.type) for field in table.schema],
+        [i for i, field in enumerate(table.schema) if pa.types.is_string(field.type)],
     )

@@ -131,7 +131,7 @@ def _origin(answer: _Answer, folder: Path) -> str:
 def findings_table(findings: Sequence[tuple[str, str]]) -> TextTable:
     """The findings of the checks: severity and sentence."""
     note = "" if findings else "Nothing in the log contradicts the configuration."
-    return TextTable("Checks", ["", "finding"], list(map(list, findings)), [True, True], note=note)
+    return TextTable("Checks", ["", "finding"], list(map(list, findings)), (0, 1), note=note)
 
 
 def _estimates(signals: EstimateTable, used: NDArray[np.bool_]) -> TextTable:
@@ -150,7 +150,6 @@ def _estimates(signals: EstimateTable, used: NDArray[np.bool_]) -> TextTable:
         "Outputs of the estimator",
         ["", "at the end", "least *", "greatest *", "RMS *"],
         rows,
-        [True, False, False, False, False],
         note="* in the second half",
         folded=True,
     )
@@ -164,7 +163,6 @@ def _doubts(doubts: Counter[str]) -> TextTable:
         "Doubt",
         ["why not confident", "fraction of rows [%] *"],
         shares,
-        [True, False],
         note="* in the second half; None: it was confident",
     )
 
@@ -193,7 +191,7 @@ def curve_table(curve: Curve) -> TextTable:
     if not curve.claims:
         note += " The method gives no interval."
     titles = [plain_text(cell) for cell in head]
-    return TextTable("Stiffness", titles, rows, [False] * len(head), note=note)
+    return TextTable("Stiffness", titles, rows, words=(), note=note)
 
 
 def found_table(sheet: Sheet) -> TextTable:
@@ -208,7 +206,7 @@ def found_table(sheet: Sheet) -> TextTable:
         "Joint and motor",
         ["", "name", "value", "unit", "95 % interval", "interval from"],
         rows,
-        [True, True, False, True, False, True],
+        words=(0, 1, 3, 5),
     )
 
 
@@ -221,4 +219,4 @@ def estimator_table(sheet: Sheet) -> TextTable:
     ]
     note = "motor.B and motor.D_theta as they were found"
     title = "Parameters of the estimator"
-    return TextTable(title, ["parameter", "value"], rows, [True, False], note=note, folded=True)
+    return TextTable(title, ["parameter", "value"], rows, note=note, folded=True)

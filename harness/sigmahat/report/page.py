@@ -159,7 +159,7 @@ def from_sweep(folder: Path) -> Contents:
         "Mean and 95 % interval over the runs",
         [column.title for column in columns],
         list(zip(*(column.cells for column in columns), strict=True)),
-        [column.words for column in columns],
+        [i for i, column in enumerate(columns) if column.words],
     )
     panels = [*distributions(sweep), *against_parameters(sweep)]
     return Contents(f"Sweep: {folder.resolve().name}", lines, [summary], panels)
