@@ -22,7 +22,6 @@ extensions = [
     "sphinx.ext.autodoc",
     "sphinx.ext.autosummary",
     "sphinx_copybutton",
-    "sphinx_design",
     "fmu_variables",
     "mathml",
     "repository_links",
@@ -30,7 +29,7 @@ extensions = [
 
 # Pages are read on GitHub, too: there and here, headings have the same anchors.
 myst_heading_anchors = 4
-myst_enable_extensions = ["dollarmath", "colon_fence"]
+myst_enable_extensions = ["dollarmath"]
 highlight_language = "none"  # of indented blocks: commands with their comments
 copybutton_exclude = ".linenos, .gp, .c"  # comments behind commands are not for the shell
 
