@@ -1,17 +1,9 @@
 within Sigmahat.Examples;
 model Table1 "Table I: the stiffness of the AwAS, estimated from encoders and motor torque"
-  extends Icons.Example;
-  Sources.Sine tau(amplitude=0.3, frequency=0.1) "Torque of the principal motor"
-    annotation (Placement(transformation(extent={{-90,20},{-70,40}})));
-  Sources.Sine tau_c(amplitude=8, frequency=0.1) "Torque of the secondary motor"
-    annotation (Placement(transformation(extent={{-90,-20},{-70,0}})));
-  Plants.AwasPlant plant annotation (Placement(transformation(extent={{-40,-20},{0,20}})));
+  extends Awas;
   Estimators.StiffnessEstimator estimator annotation (Placement(transformation(extent={{40,-20},{80,20}})));
   Real error(unit="1") "Relative error of the estimate";
 equation
-  connect(tau.y, plant.tau) annotation (Line(points={{-69,30},{-56,30},{-56,12},{-44,12}}, color={0,0,127}));
-  connect(tau_c.y, plant.tau_c) annotation (Line(points={{-69,-10},{-56,-10},{-56,0},{-44,0}}, color={0,0,127}));
-  plant.tau_ext = 0;
   connect(plant.theta_measured, estimator.theta) annotation (Line(points={{2,16},{36,16}}, color={0,0,127}));
   connect(plant.q_measured, estimator.q) annotation (Line(points={{2,10},{18,10},{18,8},{36,8}}, color={0,0,127}));
   connect(plant.theta_c_measured, estimator.theta_c) annotation (Line(points={{2,4},{18,4},{18,0},{36,0}}, color={0,0,127}));
