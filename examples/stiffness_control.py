@@ -24,6 +24,7 @@ import sigmahat
 
 T, DURATION = 1e-3, 45.0  # [s]
 K_S, R_0, LEAD = 14220.0, 0.1, 0.0025 / (2 * math.pi)  # data sheet [N/m, m, m/rad]
+MOTION = {"signal.tau.amplitude": 0.3, "signal.tau.frequency": 0.5}  # without it no estimate
 START = 2.0  # until then the lever arm rests and the estimate settles [s]
 GAIN = 20.0  # tau_c for an error of one in the square root of the stiffness
 LARGEST = 8.0  # of tau_c, as in the paper [N.m]: up to some 50 N.m/rad in a second
@@ -52,10 +53,8 @@ class Plant:
         return values
 
     def step(self, t: float, tau_c: float) -> None:
-        """From t to t + T; the torque of the principal motor is linear, the other one constant."""
-        self._set({"tau": torque(t), "tau_c": tau_c})
-        slope = (torque(t + T) - torque(t)) / T
-        self._fmu.setRealInputDerivatives([self._references["tau"]], [1], [slope])
+        """From t to t + T, with a constant torque of the secondary motor."""
+        self._set({"tau_c": tau_c})
         self._fmu.doStep(t, T)
 
     def close(self) -> None:
@@ -72,14 +71,9 @@ def wanted(t: float) -> float:
     return 235.0 + 85.0 * math.sin(2 * math.pi * 0.05 * (t - 20))
 
 
-def torque(t: float) -> float:
-    """Torque of the principal motor [N.m]: without motion nothing can be estimated."""
-    return 0.3 * math.sin(2 * math.pi * 0.5 * t)
-
-
 def run(with_estimate: bool) -> NDArray[np.float64]:
     """One run. Columns: t [s]; commanded, true and estimated stiffness [N.m/rad]; tau_c [N.m]."""
-    plant = Plant({"spring.k_s": 0.85 * K_S, "initial.theta_c": 0.0})
+    plant = Plant({"spring.k_s": 0.85 * K_S, "initial.theta_c": 0.0, **MOTION})
     # The torque is exact here, but for noise: no gain error.
     estimator = sigmahat.Estimator(
         {"method": "FilteredRegression", "rls.n": 3, "prior.torque_gain": 0.0}
