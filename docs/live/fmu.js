@@ -88,12 +88,9 @@ class Signals {
     this.type = callType(fmu.variable(variables[0]));
     this.count = variables.length;
     this.references = fmu.wasm.malloc(4 * this.count);
-    this.orders = fmu.wasm.malloc(4 * this.count);
     this.place = fmu.wasm.malloc(8 * this.count);
-    const buffer = fmu.wasm.memory.buffer;
-    new Uint32Array(buffer, this.references, this.count)
+    new Uint32Array(fmu.wasm.memory.buffer, this.references, this.count)
       .set(variables.map((name) => fmu.variable(name).reference));
-    new Int32Array(buffer, this.orders, this.count).fill(1);
   }
 
   /** The values of the last call, in the memory of the FMU. */
@@ -114,12 +111,6 @@ class Signals {
   set(values) {
     this.values.set(values);
     this.fmu.call(`fmi2Set${this.type}`, this.references, this.count, this.place);
-  }
-
-  /** First derivatives of inputs, for the next step. */
-  setSlopes(values) {
-    this.values.set(values);
-    this.fmu.call("fmi2SetRealInputDerivatives", this.references, this.count, this.orders, this.place);
   }
 }
 

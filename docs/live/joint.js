@@ -43,8 +43,7 @@ const joint = {
   /** A new simulation with the settings. */
   start() {
     try {
-      this.simulation = new Simulation(
-        this.plant, this.estimator, this.starts(), this.torques(), SHOWN);
+      this.simulation = new Simulation(this.plant, this.estimator, this.starts(), SHOWN);
       say("joint-message", "");
     } catch (error) {
       this.simulation = null;
@@ -69,6 +68,7 @@ const joint = {
     return {
       plant: {
         ...SCENARIO.plant,
+        "signal.tau.frequency": this.setting("frequency"),
         "motor.tau_coulomb": this.setting("coulomb") / 1000,
         "noise.tau_variance": Number(of["noise.tau_variance"].start) * noise ** 2,
       },
@@ -79,14 +79,6 @@ const joint = {
         "noise.tau": Number(variables["noise.tau"].start) * Math.max(noise, LEAST_NOISE),
       },
     };
-  },
-
-  /** The inputs of the plant, by the number of the sample. */
-  torques() {
-    const signals = Object.values(SCENARIO.inputs).map((sine) => ({ ...sine }));
-    signals[0].frequency = this.setting("frequency");
-    return (k) => signals.map(({ amplitude, frequency, phase }) =>
-      amplitude * Math.sin(2 * Math.PI * frequency * SCENARIO.T * k + phase));
   },
 
   /** A frame of the browser, at a time in ms. */

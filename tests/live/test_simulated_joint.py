@@ -36,8 +36,7 @@ _SIMULATE = """
 const [method, plant, estimator, count] = given;
 joint.form.elements.method.value = METHODS[method];
 const record = { plant, estimator };
-const simulation = new Simulation(
-  joint.plant, joint.estimator, joint.starts(), joint.torques(), record);
+const simulation = new Simulation(joint.plant, joint.estimator, joint.starts(), record);
 const found = {};
 for (const [of, names] of Object.entries(record))
   for (const name of names) found[`${of} ${name}`] = new Float64Array(count);
@@ -69,7 +68,7 @@ def outputs(fmu: str) -> list[str]:
 
 @pytest.mark.parametrize("method", ["Paper2011", "FilteredRegression"])
 def test_table1_in_the_browser_is_that_of_the_fmus(method: str, page: LivePage) -> None:
-    """The page makes its own torques, by the settings that it opens with."""
+    """The plant makes its torques itself, by the settings that the page opens with."""
     plant, estimator = outputs("AwasPlant"), outputs("StiffnessEstimator")
     table1 = scenario("table1")
     residual = table1.estimators["RESIDUAL"]

@@ -47,7 +47,7 @@ def write(ssp: Path, plant: Path, estimator: Path, templates: Path, version: str
 
         add("SystemStructure.ssd", "SystemStructure.ssd")
         for element, fmu, start in (
-            ("plant", of_plant, {**table1.plant.start, **_torques(table1)}),
+            ("plant", of_plant, {**table1.plant.start, **torques(table1)}),
             ("estimator", of_estimator, residual.start),
         ):
             more = {"element": element, "comments": (), "parameters": _parameters(fmu, start)}
@@ -55,7 +55,7 @@ def write(ssp: Path, plant: Path, estimator: Path, templates: Path, version: str
         archive.write(ssp, contents)
 
 
-def _torques(table1: Scenario) -> dict[str, Value]:
+def torques(table1: Scenario) -> dict[str, Value]:
     """The torques of the scenario as the sines that the plant adds to its inputs.
 
     So the system moves without other inputs. Raises ValueError for a signal that is no sine.

@@ -15,6 +15,7 @@ from typing import Any
 
 from sigmahat import guessing
 from sigmahat.export import cross_compiler
+from sigmahat.export.system import torques
 from sigmahat.files import toml_file
 from sigmahat.fmi.instance import Fmu, Value
 from sigmahat.logs.configuration import ANOTHER_ROBOT, ANY_COULOMB
@@ -24,7 +25,7 @@ FUNCTIONS = (
     *("fmi2Instantiate", "fmi2SetupExperiment", "fmi2EnterInitializationMode"),
     *("fmi2ExitInitializationMode", "fmi2DoStep", "fmi2GetReal", "fmi2GetInteger"),
     *("fmi2GetBoolean", "fmi2SetReal", "fmi2SetInteger", "fmi2SetBoolean"),
-    *("fmi2SetRealInputDerivatives", "page_callbacks", "malloc"),
+    *("page_callbacks", "malloc"),
 )
 """Functions that the page calls."""
 _TARGET, _KIND = "wasm32-wasi", "-mexec-model=reactor"
@@ -93,9 +94,8 @@ def _scenario(fmus: Mapping[str, Path]) -> dict[str, Any]:
     return {
         "T": table1.T,
         "duration": table1.duration,
-        "inputs": {name: vars(signal) for name, signal in table1.plant.inputs.items()},
         "connections": estimator.connections,
-        "plant": _numbers(fmus[table1.plant.fmu], table1.plant.start),
+        "plant": _numbers(fmus[table1.plant.fmu], {**table1.plant.start, **torques(table1)}),
         "estimator": _numbers(fmus[estimator.fmu], estimator.start),
     }
 
