@@ -110,22 +110,19 @@ const log = {
       field.placeholder = field.title = per ?? "";
     }
     const { variables } = joint.estimator, set = document.getElementById("parameters");
-    const names = [...ASKED, ...(this.chosen("theta_c").column ? ASKED_WITH_SETTING : [])];
+    const names = [...ASKED, ...(this.chosen("theta_c").column ? ASKED_WITH_SETTING : []), "rls.symmetric"];
     const before = this.typed();
     const fields = names.map((name) => {
-      const { unit, description, start } = variables[name], label = document.createElement("label");
+      const { type, unit, description, start } = variables[name], label = document.createElement("label");
       label.title = description;
       const asks = name in GUESSES || name === GEAR;
-      const field = number(name, before[name] ?? (asks ? "" : Number(UNKNOWN[name] ?? start)));
+      const field = type === "Boolean" ? checkbox(name, before[name] ?? start === "true")
+        : number(name, before[name] ?? (asks ? "" : Number(UNKNOWN[name] ?? start)));
       if (asks) field.placeholder = name === GEAR ? "fill in" : "from the log";
       label.append(`${name}${unit && unit !== "1" ? ` [${unit.replaceAll(".", "·").replace(/2\b/, "²")}]` : ""}`, field);
       return label;
     });
-    const symmetric = document.createElement("label"), box = checkbox("rls.symmetric");
-    symmetric.title = variables["rls.symmetric"].description;
-    box.checked = before["rls.symmetric"] ?? true;
-    symmetric.append("rls.symmetric", box);
-    set.replaceChildren(set.querySelector("legend"), ...fields, symmetric);
+    set.replaceChildren(set.querySelector("legend"), ...fields);
   },
 
   /** Parameters that have a value. */
@@ -189,8 +186,8 @@ function number(name, value) {
   return Object.assign(named("input", name), { type: "number", step: "any", value });
 }
 
-function checkbox(name) {
-  return Object.assign(named("input", name), { type: "checkbox" });
+function checkbox(name, checked = false) {
+  return Object.assign(named("input", name), { type: "checkbox", checked });
 }
 
 function named(tag, name) {
