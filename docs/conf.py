@@ -1,12 +1,9 @@
 """Configuration of the site: `cmake --workflow --preset docs` builds it with Sphinx."""
 
-import re
 import sys
 from pathlib import Path
-from typing import Any
 
 import tomlkit
-from sphinx.application import Sphinx
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(Path(__file__).parent / "extensions"))
@@ -20,7 +17,6 @@ html_short_title = "sigmahat"
 extensions = [
     "myst_parser",
     "sphinx.ext.autodoc",
-    "sphinx.ext.autosummary",
     "sphinx_copybutton",
     "fmu_variables",
     "mathml",
@@ -43,7 +39,6 @@ autodoc_preserve_defaults = True
 autodoc_type_aliases = {name: name for name in ("NDArray", "Signal")}
 python_use_unqualified_type_names = True
 python_display_short_literal_types = True
-autosummary_generate = False  # the tables link to entries of the same page
 
 html_theme = "pydata_sphinx_theme"
 html_theme_options = {
@@ -62,14 +57,3 @@ html_css_files = ["site.css"]
 html_js_files = ["site.js"]
 html_show_sourcelink = False
 html_copy_source = False
-
-
-def _names_of_aliases(*event: Any) -> tuple[str | None, ...]:
-    """Signature and return type; Sphinx shows an alias inside of a generic type as it holds it."""
-    held = r"TypeAliasForwardRef\('(\w+)'\)"
-    return tuple(text and re.sub(held, r"\1", text) for text in event[-2:])
-
-
-def setup(app: Sphinx) -> None:
-    """Called by Sphinx."""
-    app.connect("autodoc-process-signature", _names_of_aliases)
