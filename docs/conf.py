@@ -12,7 +12,6 @@ _about = tomlkit.parse((REPOSITORY / "pyproject.toml").read_text(encoding="utf-8
 project = "sigmahat"
 release = version = _about["project"]["version"]
 html_title = f"sigmahat {version}"
-html_short_title = "sigmahat"
 
 extensions = [
     "myst_parser",
@@ -37,8 +36,6 @@ autodoc_default_options = {"members": True, "member-order": "bysource"}
 autodoc_typehints_format = "short"
 autodoc_preserve_defaults = True
 autodoc_type_aliases = {name: name for name in ("NDArray", "Signal")}
-python_use_unqualified_type_names = True
-python_display_short_literal_types = True
 
 html_theme = "pydata_sphinx_theme"
 html_theme_options = {
@@ -55,5 +52,4 @@ copyright = "sigmahat, BSD-2-Clause"
 html_static_path = ["static"]
 html_css_files = ["site.css"]
 html_js_files = ["site.js"]
-html_show_sourcelink = False
 html_copy_source = False
