@@ -8,9 +8,7 @@ file(GLOB promises CONFIGURE_DEPENDS tests/proof/test_promises_of_*.py)
 list(APPEND tests ${promises} tests/plants/test_plants_of_the_paper.py tests/plants/test_every_plant.py)
 add_custom_target(
   coverage
-  COMMAND
-    ${CMAKE_COMMAND} -E env SIGMAHAT_BUILD=${PROJECT_BINARY_DIR}
-    ${SIGMAHAT_PYTHON} -m pytest -q -n auto --dist loadscope -m "not slow" -k "not table1" ${tests}
+  COMMAND ${run_tests} -q --dist loadscope -m "not slow" -k "not table1" ${tests}
   COMMAND
     ${SIGMAHAT_PYTHON} -m gcovr --object-directory ${PROJECT_BINARY_DIR} --filter c/
     --filter fmu_src/ --gcov-exclude-directories .*/CompilerIdC --txt - --txt-metric branch
