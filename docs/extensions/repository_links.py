@@ -1,6 +1,7 @@
 """Links to Markdown files outside of docs/, as they work on GitHub, work on the site, too.
 
-The changelog and the like are pages of the site that include the file: a link leads to the page.
+A page of the site includes the file, and has its name in small letters: a link leads to the page.
+The README is the start page.
 """
 
 from pathlib import Path
@@ -8,12 +9,6 @@ from pathlib import Path
 from docutils import nodes
 from sphinx import addnodes
 from sphinx.application import Sphinx
-
-PAGES = {
-    **{"CHANGELOG": "changelog", "CONTRIBUTING": "contributing"},
-    **{"README": "index", "SECURITY": "security"},
-}
-"""Page of the site by file of the repository, without suffix."""
 
 
 def _resolve(app: Sphinx, document: nodes.document) -> None:
@@ -24,8 +19,9 @@ def _resolve(app: Sphinx, document: nodes.document) -> None:
         # Without a domain it is in a page that includes a file of the repository.
         folder = docs if link["refdomain"] == "doc" else docs.parent
         target = (folder / link["reftarget"]).resolve()
-        if target.parent == docs.parent and target.stem in PAGES:
-            link["refdomain"], link["reftarget"] = "doc", PAGES[target.stem]
+        page = "index" if target.stem == "README" else target.stem.lower()
+        if target.parent == docs.parent and (docs / f"{page}.md").is_file():
+            link["refdomain"], link["reftarget"] = "doc", page
             link.attributes.setdefault("reftargetid", None)
 
 
