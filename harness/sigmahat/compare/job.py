@@ -24,10 +24,8 @@ class Performance:
     """
 
     indices: Indices
-    sigma_std: float
-    """Root mean square of sigma_std relative to the true stiffness, from CALIBRATED on [%]"""
-    inside: float
-    """Percentage of instants from CALIBRATED on with an error of at most 1.96 sigma_std [%]"""
+    sigma_std: float  # RMS relative to the true stiffness, from CALIBRATED on [%]
+    inside: float  # instants from CALIBRATED on with an error of at most 1.96 sigma_std [%]
     D_theta: float  # [N.m.s/rad]
     B: float  # [kg.m2]
     tau_coulomb: float  # [N.m]

@@ -31,12 +31,9 @@ from sigmahat.plants.equations import PlantEquations
 class PlantVariable:
     """Entry of the model description for an input, output or parameter."""
 
-    unit: str
-    """One of the units of the FMUs that come with sigmahat: 1, s, rad, m, kg.m2, N.m, ..."""
-    description: str
-    """One line."""
-    start: float = 0.0
-    """Start value of an input or parameter in its unit. An output has no start value."""
+    unit: str  #: A unit of the FMUs that come with sigmahat: 1, s, rad, m, kg.m2, N.m, ...
+    description: str  #: One line.
+    start: float = 0.0  #: Start value of an input or parameter in its unit; an output has none.
 
 
 def describe(

@@ -28,40 +28,31 @@ _MOST = 1024  # steps in a piece
 class Plant:
     """A plant FMU."""
 
-    fmu: str
-    """Name of an FMU of this package, or path of a .fmu file."""
+    fmu: str  #: Name of an FMU of this package, or path of a .fmu file.
     start: Mapping[str, Value]
     """Start values by FMU name, in the unit of the variable; enumerations by item name."""
-    inputs: Mapping[str, Signal]
-    """Signal for each input that is not to stay at its start value."""
-    record: Sequence[str]
-    """Variables to record."""
+    inputs: Mapping[str, Signal]  #: Signal for each input that is not to stay at its start value.
+    record: Sequence[str]  #: Variables to record.
 
 
 @dataclass(frozen=True)
 class EstimatorFmu:
     """An estimator FMU."""
 
-    fmu: str
-    """Name of an FMU of this package, or path of a .fmu file."""
+    fmu: str  #: Name of an FMU of this package, or path of a .fmu file.
     start: Mapping[str, Value]
     """Start values by FMU name, in the unit of the variable; enumerations by item name."""
-    connections: Mapping[str, str]
-    """Output of the plant that feeds each input."""
-    record: Sequence[str]
-    """Variables to record."""
+    connections: Mapping[str, str]  #: Output of the plant that feeds each input.
+    record: Sequence[str]  #: Variables to record.
 
 
 @dataclass(frozen=True)
 class Recording:
     """Plant and estimators at t_k = k T, k = 0..N."""
 
-    t: NDArray[np.float64]
-    """Time [s], shape (N + 1,)."""
-    plant: Series
-    """Recorded variables of the plant."""
-    estimators: Mapping[str, Series]
-    """Recorded variables of each estimator, by its name."""
+    t: NDArray[np.float64]  #: Time [s], shape (N + 1,).
+    plant: Series  #: Recorded variables of the plant.
+    estimators: Mapping[str, Series]  #: Recorded variables of each estimator, by its name.
 
 
 def simulate(

@@ -22,14 +22,11 @@ class Series:
 
     values: Mapping[str, NDArray[Any]]
     """Recorded variables by name, of shape (N,) or (joints, N), in the unit of the variable."""
-    units: Mapping[str, str]
-    """Unit of each recorded Real, as in the model description."""
+    units: Mapping[str, str]  #: Unit of each recorded Real, as in the model description.
     parameters: Mapping[str, Value]
     """All parameters of the FMU at the start; with several joints, those of the first joint."""
-    t: NDArray[np.float64]
-    """Time of each sample since the first sample [s], shape (N,)."""
-    descriptions: Mapping[str, str]
-    """Description of each recorded variable, as in the model description."""
+    t: NDArray[np.float64]  #: Time of each sample since the first sample [s], shape (N,).
+    descriptions: Mapping[str, str]  #: Description of each variable, as in the model description.
 
     @staticmethod
     def of(

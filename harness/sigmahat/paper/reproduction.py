@@ -65,8 +65,7 @@ def reproduce(
     return Result(scenario, seeds, first, [indices_by_comparison(scenario, first), *others])
 
 
-TABLE = "table.csv"
-"""File with the indices of each comparison; each estimator has a file over time, too."""
+TABLE = "table.csv"  # file with the indices of each comparison; the others are over time
 ESTIMATION, SEEDS = "estimation", "seeds"  # the first columns of the file with the indices
 TIME = "t"  # the first column of a file over time
 PLANT = "plant."  # prefix of the names of plant signals in a file over time

@@ -35,20 +35,13 @@ class PlantEquations:
     """
 
     def __init__(self, name: str) -> None:
-        self.name = name
-        """Name of the FMU."""
-        self.inputs: dict[str, ca.SX] = {}
-        """Symbols by name."""
-        self.parameters: dict[str, ca.SX] = {}
-        """Symbols by name."""
-        self.states: dict[str, State] = {}
-        """Symbols, start values and scales by name."""
-        self.derivatives: dict[str, ca.SX] = {}
-        """d/dt of each state by its name."""
-        self.outputs: dict[str, ca.SX] = {}
-        """Expressions by name."""
-        self.normals: list[ca.SX] = []
-        """Noises of variance 1."""
+        self.name = name  #: Name of the FMU.
+        self.inputs: dict[str, ca.SX] = {}  #: Symbols by name.
+        self.parameters: dict[str, ca.SX] = {}  #: Symbols by name.
+        self.states: dict[str, State] = {}  #: Symbols, start values and scales by name.
+        self.derivatives: dict[str, ca.SX] = {}  #: d/dt of each state by its name.
+        self.outputs: dict[str, ca.SX] = {}  #: Expressions by name.
+        self.normals: list[ca.SX] = []  #: Noises of variance 1.
 
     def input(self, name: str) -> ca.SX:
         """Input ``name``; held, or linear in time, over a communication step."""

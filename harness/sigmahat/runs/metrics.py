@@ -17,18 +17,12 @@ class Indices:
     Relative indices are nan if their reference is zero at some time.
     """
 
-    mse: float
-    """(35) [(N.m/rad)2]"""
-    msrep: float
-    """(36) [%]"""
-    error: float
-    """Mean relative error [%]"""
-    mse_settled: float
-    """(35) without the start-up [(N.m/rad)2]"""
-    msrep_settled: float
-    """(36) without the start-up [%]"""
-    error_settled: float
-    """Mean relative error without the start-up [%]"""
+    mse: float  #: (35) [(N.m/rad)2]
+    msrep: float  #: (36) [%]
+    error: float  #: Mean relative error [%]
+    mse_settled: float  #: (35) without the start-up [(N.m/rad)2]
+    msrep_settled: float  #: (36) without the start-up [%]
+    error_settled: float  #: Mean relative error without the start-up [%]
 
 
 @dataclass(frozen=True)

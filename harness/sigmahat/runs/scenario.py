@@ -18,12 +18,9 @@ T = 1e-3  # sampling time of the paper [s], section VI.B
 class Sine:
     """amplitude sin(2 pi frequency t + phase)."""
 
-    amplitude: float
-    """Amplitude in the unit of the input."""
-    frequency: float
-    """[Hz]"""
-    phase: float = 0.0
-    """[rad]"""
+    amplitude: float  #: Amplitude in the unit of the input.
+    frequency: float  #: [Hz]
+    phase: float = 0.0  #: [rad]
 
     def __call__(self, t: NDArray[np.float64]) -> NDArray[np.float64]:
         return self.amplitude * np.sin(2 * math.pi * self.frequency * t + self.phase)
@@ -33,10 +30,8 @@ class Sine:
 class Sines:
     """Constant plus sines."""
 
-    offset: float
-    """Constant in the unit of the input."""
-    terms: Sequence[Sine]
-    """Any number of sines."""
+    offset: float  #: Constant in the unit of the input.
+    terms: Sequence[Sine]  #: Any number of sines.
 
     def __call__(self, t: NDArray[np.float64]) -> NDArray[np.float64]:
         return self.offset + sum((term(t) for term in self.terms), np.zeros_like(t))
@@ -50,44 +45,32 @@ class Comparison:
     as its nominal data describe it.
     """
 
-    name: str
-    """Row of the table."""
-    estimate: str
-    """Signal that is judged."""
-    reference: str
-    """Signal with which the estimate is compared."""
-    relative_to: str | None = None
-    """Signal for relative errors; the reference if not given."""
+    name: str  #: Row of the table.
+    estimate: str  #: Signal that is judged.
+    reference: str  #: Signal with which the estimate is compared.
+    relative_to: str | None = None  #: Signal for relative errors; the reference if not given.
 
 
 @dataclass(frozen=True)
 class Scenario:
     """One run of a plant and its estimators."""
 
-    name: str
-    """Name for `sigmahat reproduce --scenario`, and for folders."""
-    description: str
-    """One line."""
-    duration: float
-    """Simulated time [s], a multiple of T."""
-    plant: Plant
-    """The joint whose stiffness is estimated."""
-    estimators: Mapping[str, EstimatorFmu]
-    """Estimators by modality."""
+    name: str  #: Name for `sigmahat reproduce --scenario`, and for folders.
+    description: str  #: One line.
+    duration: float  #: Simulated time [s], a multiple of T.
+    plant: Plant  #: The joint whose stiffness is estimated.
+    estimators: Mapping[str, EstimatorFmu]  #: Estimators by modality.
     comparisons: Sequence[Comparison]
     """Rows of the table. The estimators in them are not variants."""
-    figures: Sequence[str]
-    """Names in sigmahat.paper.figures.catalogue.FIGURES."""
+    figures: Sequence[str]  #: Names in sigmahat.paper.figures.catalogue.FIGURES.
     variants: Mapping[str, EstimatorFmu] = field(default_factory=dict)
     """Further estimators, for the figures only."""
     paper: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     """Indices that the paper gives for a comparison: MSE [(N.m/rad)2], MSREP [%]."""
-    settled: float = 1.0
-    """Time after which an estimate is judged without its start-up [s]."""
+    settled: float = 1.0  #: Time after which an estimate is judged without its start-up [s].
     tables: Sequence[Sequence[str]] = (("mse", "msrep", "msrep_settled"),)
     """Columns of each printed table, fields of sigmahat.Indices."""
-    T: float = T
-    """Time between samples [s]."""
+    T: float = T  #: Time between samples [s].
 
     @property
     def steps(self) -> int:

@@ -117,8 +117,7 @@ class Run:
 
     number: int
     scenario: str
-    modalities: tuple[str, ...]
-    """Estimators to run; empty: all estimators that the scenario compares."""
+    modalities: tuple[str, ...]  # estimators to run; empty: all that the scenario compares
     seed: int
     parameters: Mapping[str, Value]  # values by name with owner, "plant.motor.B"
 

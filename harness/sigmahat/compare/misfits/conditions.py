@@ -99,8 +99,7 @@ class Condition:
     group: Group
     change: Change  # adds the misfit to an experiment
     joints: Sequence[Joint] = JOINTS  # joints that can have the misfit
-    torque_gain: float = 0.0
-    """Prior standard deviation of the gain of the torque that the estimator is given [1]."""
+    torque_gain: float = 0.0  # prior standard deviation of the gain of the torque [1]
 
 
 def _plant(**start: float) -> Change:

@@ -68,8 +68,7 @@ class Drive(Enum):
 
     LINEAR = 1  # linear between the samples; measured: the torque at the sample
     HELD = 2  # held; measured: the torque of the period that begins
-    HELD_MEAN = 3
-    """Held; measured: the mean torque of the period that ends and the period that begins."""
+    HELD_MEAN = 3  # held; measured: the mean torque of the periods that end and begin
 
 
 @dataclass(frozen=True)
@@ -91,8 +90,7 @@ class Experiment:
     plant: Mapping[str, float]  # start values of RealJointPlant that differ from the default values
     torque: Sines  # torque command, on the motor axis [N.m]; not used under control
     lever_arm: Sines | None  # lever arm [m]; None for a joint without a lever arm
-    errors: Mapping[str, float]
-    """Relative errors of the values of B and D_theta that the estimator is given [1]."""
+    errors: Mapping[str, float]  # relative errors of B and D_theta that the estimator is given [1]
     estimator: Mapping[str, Value] = field(default_factory=dict)
     """Start values of the estimator that differ from `settings`."""
     T: float = 1e-3  # sample period [s]
@@ -101,8 +99,7 @@ class Experiment:
     drive: Drive = Drive.LINEAR
     control: Control | None = None
     """None: the torque is the command. Else the drive holds the torque of this control."""
-    late: float = 0.0
-    """Delay of the measured torque [s], below 0: it is early; with Drive.LINEAR only."""
+    late: float = 0.0  # delay of the measured torque [s], below 0: it is early; Drive.LINEAR only
     jitter: float = 0.0  # standard deviation of the sample times, divided by T [1]
     load: float = 0.0  # constant external torque on the link [N.m]
     drift: Mapping[str, float] = field(default_factory=dict)
