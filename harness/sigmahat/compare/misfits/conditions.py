@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
+from functools import partial
 
 import numpy as np
 
@@ -95,8 +96,8 @@ Change = Callable[[Experiment], Experiment]
 class Condition:
     """A row of the table for each of its joints."""
 
-    name: str
     group: Group
+    name: str
     change: Change  # adds the misfit to an experiment
     joints: Sequence[Joint] = JOINTS  # joints that can have the misfit
     torque_gain: float = 0.0  # prior standard deviation of the gain of the torque [1]
@@ -184,124 +185,97 @@ def _exact_inertia(change: Change, error: float = 0.0) -> Change:
     return both
 
 
-_clean = _run()
 _SEA = (SEA_1K, SEA_5K)
 _COARSE = (AWAS, SEA_1K)
+_clean, _class_1, _class_2, _class_3, _gain, _random, _none = (
+    partial(Condition, group) for group in Group
+)
 
-CONDITIONS: Sequence[Condition] = (
-    Condition("none", Group.CLEAN, _clean),
-    Condition("500 Hz", Group.CLEAN, _run(T=2e-3)),
-    Condition("5 kHz", Group.CLEAN, _run(T=2e-4)),
-    Condition("contact", Group.CLEAN, lambda each: each.with_plant(each.joint.contact)),
-    Condition("PD on motor, mean of held torque", Group.CLEAN, _control(False)),
-    Condition("PD on motor, feedback of q", Group.CLEAN, _control(True)),
-    Condition("PD and gravity, one sign of phi", Group.CLEAN, _control(False, True), _SEA),
-    Condition("constant load, one sign of phi", Group.CLEAN, _load),
-    Condition("torque bias 2 %", Group.CLASS_1, _share_of_torque("sensor.tau_bias", 0.02)),
-    Condition("uneven Coulomb friction 20 %", Group.CLASS_1, _plant(motor__uneven=0.2)),
-    Condition("load friction 0.1", Group.CLASS_1, _plant(motor__load_friction=0.1)),
-    Condition("load friction 0.2", Group.CLASS_1, _plant(motor__load_friction=0.2)),
+_MISFITS: Sequence[Condition] = (
+    _clean("none", _run()),
+    _clean("500 Hz", _run(T=2e-3)),
+    _clean("5 kHz", _run(T=2e-4)),
+    _clean("contact", lambda each: each.with_plant(each.joint.contact)),
+    _clean("PD on motor, mean of held torque", _control(False)),
+    _clean("PD on motor, feedback of q", _control(True)),
+    _clean("PD and gravity, one sign of phi", _control(False, True), _SEA),
+    _clean("constant load, one sign of phi", _load),
+    _class_1("torque bias 2 %", _share_of_torque("sensor.tau_bias", 0.02)),
+    _class_1("uneven Coulomb friction 20 %", _plant(motor__uneven=0.2)),
+    _class_1("load friction 0.1", _plant(motor__load_friction=0.1)),
+    _class_1("load friction 0.2", _plant(motor__load_friction=0.2)),
+    _class_1("eccentric encoder of q, 0.31 mrad", _plant(encoder__q_eccentricity=0.31e-3)),
+    _class_1("eccentric encoder of q, 0.87 mrad", _plant(encoder__q_eccentricity=0.87e-3)),
+    _class_1("zero of q 0.2 mrad off", _plant(encoder__q_offset=0.2e-3)),
+    _class_1("torque 1 ms late", _run(late=1e-3)),
+    _class_1("torque 2 ms late", _run(late=2e-3)),
+    _class_1("damping k/300 s", _plant(spring__damping=1 / 300)),
+    _class_1("damping k/1000 s", _plant(spring__damping=1 / 1000)),
+    _class_1("jitter 5 %", _run(jitter=0.05)),
+    _class_2("zero of q 2 mrad off", _plant(encoder__q_offset=2e-3)),
+    _class_2("hysteresis 2 %", _dahl(0.02)),
+    _class_2("hysteresis 5 %", _dahl(0.05)),
+    _class_2("backlash 1 mrad", _plant(spring__gap=0.5e-3)),
+    _class_2("n = 1, too small", lambda each: each.with_estimator({"rls.n": 1}), (AWAS,)),
+    _class_2("m = 2, too small", lambda each: each.with_estimator({"rls.m": 2}), (AWAS,)),
+    _class_2("hardening spring, n = 1", _hardening(1), _SEA),
     *(
-        Condition(
-            f"eccentric encoder of q, {1e3 * size:g} mrad",
-            Group.CLASS_1,
-            _plant(encoder__q_eccentricity=size),
-        )
-        for size in (0.31e-3, 0.87e-3)
-    ),
-    Condition("zero of q 0.2 mrad off", Group.CLASS_1, _plant(encoder__q_offset=0.2e-3)),
-    Condition("torque 1 ms late", Group.CLASS_1, _run(late=1e-3)),
-    Condition("torque 2 ms late", Group.CLASS_1, _run(late=2e-3)),
-    Condition("damping k/300 s", Group.CLASS_1, _plant(spring__damping=1 / 300)),
-    Condition("damping k/1000 s", Group.CLASS_1, _plant(spring__damping=1 / 1000)),
-    Condition("jitter 5 %", Group.CLASS_1, _run(jitter=0.05)),
-    Condition("zero of q 2 mrad off", Group.CLASS_2, _plant(encoder__q_offset=2e-3)),
-    Condition("hysteresis 2 %", Group.CLASS_2, _dahl(0.02)),
-    Condition("hysteresis 5 %", Group.CLASS_2, _dahl(0.05)),
-    Condition("backlash 1 mrad", Group.CLASS_2, _plant(spring__gap=0.5e-3)),
-    Condition(
-        "n = 1, too small", Group.CLASS_2, lambda each: each.with_estimator({"rls.n": 1}), (AWAS,)
-    ),
-    Condition(
-        "m = 2, too small", Group.CLASS_2, lambda each: each.with_estimator({"rls.m": 2}), (AWAS,)
-    ),
-    Condition("hardening spring, n = 1", Group.CLASS_2, _hardening(1), _SEA),
-    *(
-        Condition(
+        _class_2(
             f"eccentric encoder of theta, {1e3 * size:g} mrad",
-            Group.CLASS_2,
             _plant(encoder__theta_eccentricity=size),
             _COARSE,
         )
         for size in (0.031e-3, 0.087e-3)
     ),
     *(
-        Condition(
+        _class_3(
             f"cogging {order} per turn, {100 * share:g} %",
-            Group.CLASS_3,
             _share_of_torque("motor.cogging", share, motor__cogging_order=order),
         )
         for order in (6, 12)
         for share in (0.02, 0.05)
     ),
-    Condition("Stribeck 1.5 times", Group.CLASS_3, _plant(motor__stribeck=0.5)),
+    _class_3("Stribeck 1.5 times", _plant(motor__stribeck=0.5)),
     *(
-        Condition(
-            f"{words} friction -30 % in 60 s",
-            Group.CLASS_3,
-            _run(drift={f"{name}_change": -0.3}, duration=60.0),
-        )
-        for words, name in (("viscous", "D_theta"), ("Coulomb", "tau_coulomb"))
+        _class_3(f"{words} friction -30 % in 60 s", _run(drift={name: -0.3}, duration=60.0))
+        for words, name in (("viscous", "D_theta_change"), ("Coulomb", "tau_coulomb_change"))
     ),
     *(
-        Condition(
-            f"gain {gain:g}, prior {prior:g}",
-            Group.GAIN,
-            _plant(sensor__tau_gain=gain),
-            torque_gain=prior,
-        )
+        _gain(f"gain {gain:g}, prior {prior:g}", _plant(sensor__tau_gain=gain), torque_gain=prior)
         for prior, gains in ((0.02, (0.98, 1.025)), (0.05, (0.95, 1.05)), (0.1, (0.9, 1.1)))
         for gain in gains
     ),
-    Condition(
+    _gain(
         "gain 0.9, prior 0.1, B exact",
-        Group.GAIN,
         _exact_inertia(_plant(sensor__tau_gain=0.9)),
         torque_gain=0.1,
     ),
-    Condition("viscous friction bends at 4 rad/s", Group.NONE, _plant(motor__v_bend=4.0), _COARSE),
-    Condition("torque 5 ms late", Group.NONE, _run(late=5e-3)),
-    Condition("held torque, u(k)", Group.NONE, _run(drive=Drive.HELD)),
-    Condition("held torque, mean of u", Group.NONE, _run(drive=Drive.HELD_MEAN)),
-    Condition("kinematic error 0.3 mrad", Group.NONE, _plant(gear__kinematic_error=0.3e-3)),
-    Condition("kinematic error 0.1 mrad", Group.NONE, _plant(gear__kinematic_error=0.1e-3), _SEA),
-    Condition("hysteresis 10 %", Group.NONE, _dahl(0.1)),
-    Condition("damping k/100 s", Group.NONE, _plant(spring__damping=1 / 100)),
+    _none("viscous friction bends at 4 rad/s", _plant(motor__v_bend=4.0), _COARSE),
+    _none("torque 5 ms late", _run(late=5e-3)),
+    _none("held torque, u(k)", _run(drive=Drive.HELD)),
+    _none("held torque, mean of u", _run(drive=Drive.HELD_MEAN)),
+    _none("kinematic error 0.3 mrad", _plant(gear__kinematic_error=0.3e-3)),
+    _none("kinematic error 0.1 mrad", _plant(gear__kinematic_error=0.1e-3), _SEA),
+    _none("hysteresis 10 %", _dahl(0.1)),
+    _none("damping k/100 s", _plant(spring__damping=1 / 100)),
     *(
-        Condition(
-            f"encoders of {counts:.0f} counts",
-            Group.NONE,
-            _plant(encoder__theta=counts, encoder__q=counts),
-        )
+        _none(f"encoders of {counts:.0f} counts", _plant(encoder__theta=counts, encoder__q=counts))
         for counts in (4096.0, 65536.0, 1048576.0)
     ),
-    Condition("q read 2 ms after theta", Group.NONE, _plant(encoder__q_delay=2e-3)),
-    Condition("hardening spring, n = 3", Group.NONE, _hardening(3), _SEA),
-    Condition("rest for 30 s, then motion for 10 s", Group.NONE, _run(rest=30.0, duration=40.0)),
-    *(
-        Condition(f"B exact: {name}", Group.NONE, _exact_inertia(change))
-        for name, change in (
-            ("none", _clean),
-            ("load friction 0.1", _plant(motor__load_friction=0.1)),
-            ("hysteresis 5 %", _dahl(0.05)),
-            ("damping k/300 s", _plant(spring__damping=1 / 300)),
-            ("eccentric encoder of q, 0.31 mrad", _plant(encoder__q_eccentricity=0.31e-3)),
-            ("zero of q 0.2 mrad off", _plant(encoder__q_offset=0.2e-3)),
-            ("jitter 5 %", _run(jitter=0.05)),
-            ("torque 2 ms late", _run(late=2e-3)),
-        )
-    ),
-    Condition("B 5 % wrong, given as exact", Group.NONE, _exact_inertia(_clean, 0.05)),
-    Condition("random, all misfits at once", Group.RANDOM, all_misfits, torque_gain=0.02),
-    Condition("random, without misfits", Group.NONE, other_joint),
+    _none("q read 2 ms after theta", _plant(encoder__q_delay=2e-3)),
+    _none("hardening spring, n = 3", _hardening(3), _SEA),
+    _none("rest for 30 s, then motion for 10 s", _run(rest=30.0, duration=40.0)),
+)
+_CHANGES = {each.name: each.change for each in _MISFITS}
+_WITH_EXACT_INERTIA = (
+    "none", "load friction 0.1", "hysteresis 5 %", "damping k/300 s",
+    "eccentric encoder of q, 0.31 mrad", "zero of q 0.2 mrad off", "jitter 5 %", "torque 2 ms late",
+)  # fmt: skip
+
+CONDITIONS: Sequence[Condition] = (
+    *_MISFITS,
+    *(_none(f"B exact: {n}", _exact_inertia(_CHANGES[n])) for n in _WITH_EXACT_INERTIA),
+    _none("B 5 % wrong, given as exact", _exact_inertia(_run(), 0.05)),
+    _random("random, all misfits at once", all_misfits, torque_gain=0.02),
+    _none("random, without misfits", other_joint),
 )
