@@ -70,7 +70,7 @@ def test_the_plan_of_the_documentation(tmp_path: Path) -> None:
     (text,) = re.findall(r"```toml\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)
     (tmp_path / "plan.toml").write_text(text)
     plan = read_plan(tmp_path / "plan.toml")
-    assert (len(plan), plan.modalities) == (100, ("RESIDUAL",))
+    assert (plan.count, plan.modalities) == (100, ("RESIDUAL",))
     assert plan.parameters == {
         "estimator.motor.D_theta": tuple(np.linspace(0.9e-3, 1.1e-3, 5).tolist()),
         "plant.link.M": Drawn("normal", 0.1, 0.005),
@@ -84,7 +84,7 @@ def test_options_replace_the_file(tmp_path: Path) -> None:
     plan = read_plan(path, ("table1",), 3, ("RESIDUAL", "SENSOR"), settings)
     assert plan.scenarios == ("table1",)
     assert plan.modalities == ("RESIDUAL", "SENSOR")
-    assert len(plan) == len(plan.runs) == 1 * 3 * 1 * 2 * 2
+    assert plan.count == len(plan.runs) == 1 * 3 * 1 * 2 * 2
 
 
 @pytest.mark.parametrize(

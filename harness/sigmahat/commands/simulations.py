@@ -215,7 +215,7 @@ def sweep(
         read = read_plan(plan, scenario, seeds, modality, settings)
         for name in read.scenarios:
             common.ready_scenario(name)
-        with common.progress("Running", len(read)) as bar:
+        with common.progress("Running", read.count) as bar:
             result = run(read, out, scheduler, progress=bar.update)
     common.answer(
         f"{conditions(read)}\n\n{summary(result)}\n\n"

@@ -74,17 +74,11 @@ PLANT = "plant."  # prefix of the names of plant signals in a file over time
 _ORDER = ("MODEL", "SENSOR", "RESIDUAL")  # the order of Table I; other estimators follow by name
 
 
-@dataclass(frozen=True)
-class ResultFiles:
-    """The files of one folder."""
+def read_result_files(folder: Path) -> tuple[pa.Table, Mapping[str, Mapping[str, NDArray[Any]]]]:
+    """The files of a folder of `sigmahat reproduce`, estimators in the order of Table I.
 
-    table: pa.Table  # the indices of each comparison, as in table.csv
-    series: Mapping[str, Mapping[str, NDArray[Any]]]
-    """Signals by estimator and by name, of one shape: t, plant.<output>, <output>."""
-
-
-def read_result_files(folder: Path) -> ResultFiles:
-    """Reads a folder of `sigmahat reproduce`, the estimators in the order of Table I.
+    Returns the indices of each comparison, as in table.csv, and the signals by estimator and by
+    name, of one shape: t, plant.<output>, <output>.
 
     Raises ValueError, which says what to do, if the files are not from one run.
     """
@@ -102,7 +96,7 @@ def read_result_files(folder: Path) -> ResultFiles:
             f"{folder}: files of different lengths; run `sigmahat reproduce` again, "
             "with an empty folder as --out"
         )
-    return ResultFiles(table, series)
+    return table, series
 
 
 def write_results(result: Result, folder: Path) -> None:

@@ -40,19 +40,19 @@ def from_reproduction(folder: Path) -> Contents:
 
     Raises ValueError as read_result_files() does.
     """
-    files = read_result_files(folder)
-    main = _MAIN if _MAIN in files.series else next(iter(files.series))
-    signals = dict(files.series[main])
+    table, series = read_result_files(folder)
+    main = _MAIN if _MAIN in series else next(iter(series))
+    signals = dict(series[main])
     t = signals.pop(TIME)
     estimates = {}
-    for name, own in files.series.items():
+    for name, own in series.items():
         keys = {each: f"{name} {each}" for each in own if _STIFFNESS.fullmatch(each)}
         signals |= {key: own[each] for each, key in keys.items()}
         estimates[name] = keys
     reduced = reduce(t, signals)
-    seeds = files.table[SEEDS][0].as_py()
+    seeds = table[SEEDS][0].as_py()
     of_seeds = f" of {seeds} seeds; the plots show the first" if seeds > 1 else ""
-    table = files.table  # the columns that have a value in some row
+    # The columns that have a value in some row.
     shown = [name for name in table.column_names if table[name].null_count < len(table)]
     return Contents(
         f"Reproduction: {folder.resolve().name}",
@@ -60,9 +60,9 @@ def from_reproduction(folder: Path) -> Contents:
         [of_file("Performance indices", table.select(shown))],
         [
             *stiffness_panels(reduced, estimates),
-            *quantity_panels(reduced, main if len(files.series) > 1 else ""),
+            *quantity_panels(reduced, main if len(series) > 1 else ""),
         ],
-        answer=list(over_deformation(files.series[main], main)),
+        answer=list(over_deformation(series[main], main)),
         notes=sampling(reduced),
         every=reduced.every if reduced.bucket > 1 else None,
     )

@@ -56,7 +56,7 @@ class Records:
             )
         for i, each in enumerate(contents[1:], 2):
             number = each["setting"] * plan.seeds + each["seed"] - 1
-            if number in self.outcomes or not 0 <= number < len(plan):
+            if number in self.outcomes or not 0 <= number < plan.count:
                 raise ValueError(
                     f"{path}, line {i}: run of setting {each['setting']}, seed {each['seed']} is "
                     "there twice; delete this line and start again"
@@ -126,7 +126,7 @@ def sweep(
         progress(len(done.outcomes))
         _run(plan, done, scheduler, progress)
         failures = [o.failure for _, o in sorted(done.outcomes.items()) if o.failure]
-        if len(failures) == len(plan):
+        if len(failures) == plan.count:
             done.outcomes.clear()  # nothing is worth keeping
             raise ValueError(f"every run failed, the first with: {failures[0]}")
         table = of_outcomes(plan, done.outcomes)

@@ -140,12 +140,9 @@ class Plan:
     modalities: tuple[str, ...]  # as in Run
     parameters: Mapping[str, Values]  # values by name with owner
 
-    def __len__(self) -> int:
-        return self.count
-
     @property
     def count(self) -> int:
-        """Number of runs, also if this number is too large for len()."""
+        """Number of runs."""
         return len(self.scenarios) * self.seeds * math.prod(map(len, self.listed.values()))
 
     @property

@@ -158,7 +158,7 @@ def conditions(plan: Plan) -> str:
     """The runs of a plan, in one line."""
     seeds = f"{plan.seeds} seed{'s' if plan.seeds > 1 else ''}"
     names = f"; {', '.join(plan.parameters)}" if plan.parameters else ""
-    return f"{', '.join(plan.scenarios)}: {len(plan)} runs, {seeds}{names}"
+    return f"{', '.join(plan.scenarios)}: {plan.count} runs, {seeds}{names}"
 
 
 def _value(value: object) -> str:
