@@ -54,14 +54,33 @@ force_option = click.option("--force", is_flag=True, help="Overwrite the file if
 
 
 def config_option(what: str) -> Callable[[_Command], _Command]:
+    """Gives a command with LOG the option --config."""
+
+    def path(context: click.Context, _: click.Parameter, given: Path | None) -> Path:
+        return given or configuration_of(context.params["log"])
+
     text = f"{what}  [default: LOG with the suffix .toml, in this folder]"
-    return click.option("--config", type=FILE, help=text)
+    return click.option("--config", type=FILE, callback=path, help=text)
 
 
 def out_option(what: str, default: str) -> Callable[[_Command], _Command]:
-    """Gives a command the option --out, a folder; `default` is for people."""
+    """Gives a command the option --out, a folder; capitals in `default` name a parameter.
+
+    An empty name is refused: a shell passes an empty name if a variable is not set.
+    """
+
+    def folder(context: click.Context, _: click.Parameter, name: str | None) -> Path:
+        if name is None:
+            stem = re.sub("[A-Z]+", lambda m: Path(context.params[m[0].lower()]).stem, default)
+            return Path("sigmahat-results", stem)
+        if name == "":
+            raise click.BadParameter("expected a folder, got an empty name.")
+        if Path(name).is_file():
+            raise click.BadParameter(f"{name} is a file; name a folder.")
+        return Path(name)
+
     text = f"{what}  [default: sigmahat-results/{default}]"
-    return click.option("--out", callback=_folder, help=text)
+    return click.option("--out", callback=folder, help=text)
 
 
 def refuse_to_overwrite(path: Path, force: bool, option: str) -> None:
@@ -158,18 +177,6 @@ def printable(text: str) -> str:
     """A text without characters that a terminal would execute, such as in the name of a column."""
     kept = "\n\t"
     return "".join(c if c.isprintable() or c in kept else repr(c)[1:-1] for c in text)
-
-
-def _folder(_: click.Context, __: click.Parameter, name: str | None) -> Path | None:
-    """Callback of an option: a folder to write into.
-
-    An empty name is refused: a shell passes an empty name if a variable is not set.
-    """
-    if name == "":
-        raise click.BadParameter("expected a folder, got an empty name.")
-    if name is not None and Path(name).is_file():
-        raise click.BadParameter(f"{name} is a file; name a folder.")
-    return None if name is None else Path(name)
 
 
 def progress(label: str, length: int) -> Any:

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 )
 @common.force_option
 @common.quiet_option
-def init(log: Path, config: Path | None, joint: str | None, force: bool) -> None:
+def init(log: Path, config: Path, joint: str | None, force: bool) -> None:
     """Write a configuration for LOG, to be checked and completed.
 
     LOG is CSV, Parquet, MAT, HDF5, MCAP or a ROS 2 bag. Ports, units, signs and gear are guessed
@@ -45,17 +45,16 @@ def init(log: Path, config: Path | None, joint: str | None, force: bool) -> None
     from sigmahat.logs.readers.formats import open_log
 
     common.need_fmu("StiffnessEstimator")
-    one = config or common.configuration_of(log)
-    with common.errors_in_one_line(one, "--config"):
+    with common.errors_in_one_line(config, "--config"):
         opened = open_log(log)
         columns = read_columns(opened)
         guessed = guess(columns)
         if joint is not None:
             guessed = {"": one_joint(opened, guessed, joint)}
-        common.refuse_to_overwrite(one, force, "--config")
-        write_whole(template.write(opened, columns, guessed), one)
+        common.refuse_to_overwrite(config, force, "--config")
+        write_whole(template.write(opened, columns, guessed), config)
     notes = [*opened.notes, *columns.unreadable]
-    common.answer("\n".join([*notes, _text(log, guessed, one)]))
+    common.answer("\n".join([*notes, _text(log, guessed, config)]))
 
 
 def _text(log: Path, joints: Mapping[str, JointGuess], path: Path) -> str:
@@ -97,7 +96,7 @@ def _guessed(joint: JointGuess) -> Iterator[str]:
     default=0,
     help="Port of this computer to serve the page at.  [default: any that is free]",
 )
-def open_page(log: Path, config: Path | None, port: int) -> None:
+def open_page(log: Path, config: Path, port: int) -> None:
     """Set up LOG in the browser: columns, units and signs, with checks and the curve below.
 
     The page is served on this computer alone, at an address with a token, until Ctrl-C. The page
@@ -111,11 +110,10 @@ def open_page(log: Path, config: Path | None, port: int) -> None:
     from sigmahat.page.server import serve
 
     common.need_fmu("StiffnessEstimator")
-    path = config or common.configuration_of(log)
-    with common.errors_in_one_line(path, "--config"):
+    with common.errors_in_one_line(config, "--config"):
         opened = open_log(log)
-        document = read_document(path) if path.exists() else None
-        draft = serve(opened, path, document, port, click.echo)
+        document = read_document(config) if config.exists() else None
+        draft = serve(opened, config, document, port, click.echo)
     if draft is not None:
         click.echo(f"Edits that were not written are in {draft}; to go on from them:")
         click.echo(f"  sigmahat open {log} --config {draft}")
@@ -126,7 +124,7 @@ def open_page(log: Path, config: Path | None, port: int) -> None:
 @common.config_option("File from `sigmahat init`.")
 @common.joint_option
 @common.answer_options
-def check(log: Path, config: Path | None, joint: str) -> int:
+def check(log: Path, config: Path, joint: str) -> int:
     """Find likely errors in the configuration of LOG, and name the keys to look at.
 
     Errors of signs, units, gear ratios, zeros and delays are found. What no log can show is listed.
@@ -139,7 +137,6 @@ def check(log: Path, config: Path | None, joint: str) -> int:
     from sigmahat.checks.text import summary
 
     common.need_fmu("StiffnessEstimator")
-    config = config or common.configuration_of(log)
     with common.errors_in_one_line(config, "--config"):
         checked = common.for_each_joint(log, config, joint, partial(_checked, log, config))
     texts = {name: f"{log} with {config}\n{summary(each)}" for name, each in checked.items()}
@@ -164,9 +161,7 @@ def _checked(log: Path, config: Path, joint: str) -> Checked:
 )
 @click.option("--dry-run", is_flag=True, help="Do not change the configuration.")
 @common.answer_options
-def identify(
-    log: Path, config: Path | None, joint: str, torque_constant: bool, dry_run: bool
-) -> None:
+def identify(log: Path, config: Path, joint: str, torque_constant: bool, dry_run: bool) -> None:
     """Identify B, D_theta and Coulomb friction from LOG; write them into the configuration.
 
     A value that the motion does not determine is not written, but reported. Comments are kept.
@@ -185,7 +180,6 @@ def identify(
     from sigmahat.logs.configuration import read_document
 
     common.need_fmu("StiffnessEstimator")
-    config = config or common.configuration_of(log)
     texts, values = {}, {}
     with common.errors_in_one_line(config, "--config"):
         job = partial(_identified, log, config, torque_constant, dry_run)

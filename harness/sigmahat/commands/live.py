@@ -57,7 +57,7 @@ def live(
     targets: Sequence[str],
     columns: str,
     host: str,
-    out: Path | None,
+    out: Path,
     start_from: Path | None,
 ) -> None:
     """Estimate on line: messages of a robot in, estimates out, until Ctrl-C.
@@ -74,7 +74,6 @@ def live(
     from sigmahat.live.watch import Inbox, terminal, watch
 
     common.need_fmu("StiffnessEstimator")
-    out = out or Path("sigmahat-results", f"{config.stem}-live")
     with common.errors_in_one_line(out), created_folder(out):
         session, inbox = Session(config, out, start_from), Inbox()
         ends = Endpoints(session, host, out)

@@ -67,7 +67,7 @@ def motion(
     seconds: float,
     start: float,
     after: Path | None,
-    out: Path | None,
+    out: Path,
     joint: str,
 ) -> None:
     """Propose a motion of the motor that will show the stiffness of a joint.
@@ -90,7 +90,6 @@ def motion(
     if after is not None and config is None:
         raise click.UsageError("--after LOG needs CONFIG, the configuration of the log")
     limits = Limits(angle, velocity, torque, deformation)
-    out = out or Path("sigmahat-results", "motion")
     with common.errors_in_one_line(out):
         configuration = None if config is None else read_configuration(config, joint)
         joints = of_limits(limits)

@@ -37,8 +37,8 @@ if TYPE_CHECKING:
 @common.answer_options
 def estimate(
     log: Path,
-    config: Path | None,
-    out: Path | None,
+    config: Path,
+    out: Path,
     start_from: Path | None,
     to: str | None,
     joint: str,
@@ -63,8 +63,6 @@ def estimate(
     common.need_fmu("StiffnessEstimator")
     if to is not None:
         import_module("mcap")  # report a missing package before the work
-    out = out or Path("sigmahat-results", log.stem)
-    config = config or common.configuration_of(log)
     with common.errors_in_one_line(out):
         job = partial(_estimated, log, config, out, start_from, to)
         found = common.for_each_joint(log, config, joint, job)

@@ -21,7 +21,7 @@ def _names(_: click.Context, __: click.Parameter, begin: str) -> list[str]:
 )
 @common.out_option("Folder for figures and CSV files.", "SCENARIO")
 @common.answer_options
-def reproduce(scenario: str, seeds: int, out: Path | None) -> None:
+def reproduce(scenario: str, seeds: int, out: Path) -> None:
     """Run a scenario; print its table, draw its figures.
 
     \b
@@ -34,7 +34,6 @@ def reproduce(scenario: str, seeds: int, out: Path | None) -> None:
     chosen = common.ready_scenario(scenario)
     if seeds > 1:
         import_module("scipy")  # intervals need scipy: report a missing package before the runs
-    out = out or Path("sigmahat-results", scenario)
     numbers = range(1, seeds + 1)
     with common.errors_in_one_line(out), output_folder(out) as folder:
         with common.progress("Running", seeds if seeds > 1 else chosen.steps) as bar:
@@ -71,13 +70,13 @@ def reproduce(scenario: str, seeds: int, out: Path | None) -> None:
 @click.option("--jobs", type=common.COUNT, help="Processes to use.  [default: all cores]")
 @common.out_option("Folder for figure and CSV file.", "compare")
 @common.answer_options
-def compare(misfits: bool, seeds: int, jobs: int | None, out: Path | None) -> None:
+def compare(misfits: bool, seeds: int, jobs: int | None, out: Path) -> None:
     """Compare the estimation methods on joints with wrong motor data.
 
     \b
     Example: sigmahat compare --seeds 20 --out compare
     """
-    (_misfits if misfits else _methods)(seeds, jobs, out or Path("sigmahat-results", "compare"))
+    (_misfits if misfits else _methods)(seeds, jobs, out)
 
 
 def _methods(seeds: int, jobs: int | None, out: Path) -> None:
@@ -194,7 +193,7 @@ def sweep(
     modality: tuple[str, ...],
     settings: tuple[str, ...],
     scheduler: str | None,
-    out: Path | None,
+    out: Path,
 ) -> None:
     """Run scenarios over seeds and parameters, in parallel; Monte Carlo.
 
@@ -210,7 +209,6 @@ def sweep(
     from sigmahat.sweep.plan import read_plan
     from sigmahat.sweep.summary import as_dicts, conditions, summary
 
-    out = out or Path("sigmahat-results", "sweep")
     with common.errors_in_one_line(out):
         read = read_plan(plan, scenario, seeds, modality, settings)
         for name in read.scenarios:
