@@ -3,15 +3,14 @@
 ``python -m sigmahat.export.plant_codegen AwasPlant FOLDER``
 """
 
+import re
 import sys
 from collections.abc import Iterable, Sequence
 from importlib import import_module
 from pathlib import Path
-from pkgutil import iter_modules
 
 import casadi as ca
 
-from sigmahat import plants
 from sigmahat.export import c_variables, templates
 from sigmahat.plants.equations import PlantEquations
 
@@ -83,21 +82,6 @@ _QUIET = """\
 #pragma GCC diagnostic ignored "-Wfloat-conversion"
 #endif
 """
-
-
-def find(name: str) -> PlantEquations:
-    """The plant of this name among the files of ``sigmahat.plants``.
-
-    Raises LookupError if no file has this plant.
-    """
-    names = []
-    for module in iter_modules(plants.__path__, "sigmahat.plants."):
-        plant = getattr(import_module(module.name), "plant", None)
-        if isinstance(plant, PlantEquations):
-            if plant.name == name:
-                return plant
-            names.append(plant.name)
-    raise LookupError(f"no plant {name}; there are {', '.join(names)}")
 
 
 def functions(
@@ -201,8 +185,12 @@ def _compare(plant: PlantEquations, kind: str, own: Iterable[str], wanted: Itera
 
 
 def main(name: str, folder: str) -> None:
-    """Write the code of a plant of this package, variables in the order of its template."""
-    plant = find(name)
+    """Write the code of a plant of this package, variables in the order of its template.
+
+    The equations of ``FlexibleJointPlant`` are in ``sigmahat.plants.flexible_joint``.
+    """
+    words = re.findall("[A-Z][a-z]*", name.removesuffix("Plant"))
+    plant = import_module(f"sigmahat.plants.{'_'.join(words).lower()}").plant
     root = templates.render(_TEMPLATES / f"{name}.xml", version="")
     places = c_variables.storage_in_arrays(root)
     p, u, y = ([n for n, place in places.items() if place.startswith(f"{a}[")] for a in "puy")
