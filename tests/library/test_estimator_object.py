@@ -114,7 +114,6 @@ def test_reset_forgets_and_keeps_what_was_tuned(z: Samples) -> None:
         ({"method": "Regression"}, "Regression.*FilteredRegression"),
         ({"motor.B": -1.0}, r"motor\.B: expected >= 1e-15, got -1"),
         ({"motor.B": float("nan")}, r"motor\.B: expected .*got nan"),
-        ({"rls.n": 2.5}, r"rls\.n: expected Integer, got 2\.5"),
         ({"motor.B": True}, r"motor\.B: expected Real, got True"),
         ({"rls.n": 9}, r"rls\.n: expected .*8.* got 9"),
         ({"sigma": 1.0}, "sigma"),
@@ -122,7 +121,6 @@ def test_reset_forgets_and_keeps_what_was_tuned(z: Samples) -> None:
         ("Paper2011", "parameters of one joint or more, got 'Paper2011'"),
         ([None], r"parameters of one joint or more, got \[None\]"),
         ({"rls.n": float("inf")}, r"rls\.n: expected Integer, got inf"),
-        ({"rls.n": 2**40}, r"rls\.n: expected Integer of 32 bits, got 1099511627776"),
         ({"method": None}, "method: expected Enumeration, got None"),
     ],
 )

@@ -4,6 +4,7 @@ import csv
 import re
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from PIL import Image
 
 from recordings import one_seed
 from sigmahat.paper.figures.catalogue import FIGURES
-from sigmahat.paper.reproduction import Result, conditions, table, write_series, write_table
+from sigmahat.paper.reproduction import Result, as_dict, conditions, table, write_series
 from sigmahat.paper.scenarios import SCENARIOS
 from sigmahat.plotting.figure import save
 from sigmahat.runs.metrics import Indices
@@ -47,51 +48,49 @@ def test_series_file_has_units_and_the_exact_values(tmp_path: Path) -> None:
         np.testing.assert_array_equal(numbers[:, head.index(title)], values)
 
 
-def rows_of_table(result: Result, folder: Path) -> dict[str, dict[str, str]]:
-    """The rows of the file of the table, by the estimation."""
-    write_table(result, folder / "table.csv")
-    with (folder / "table.csv").open(newline="") as file:
-        return {row["estimation"]: row for row in csv.DictReader(file)}
+def rows_of_table(result: Result) -> dict[str, dict[str, Any]]:
+    """The rows of the table for JSON, which the file has too, by the estimation."""
+    return {row["estimation"]: row for row in as_dict(result)["table"]}
 
 
-def test_table_file_of_one_seed(tmp_path: Path) -> None:
+def test_table_of_one_seed() -> None:
     result = one_seed("table1")
-    rows = rows_of_table(result, tmp_path)
+    rows = rows_of_table(result)
     assert list(rows) == ROWS
     for name, row in rows.items():
         expected = result.indices[0][name]
-        assert float(row["MSE [(N.m/rad)2]"]) == expected.mse
-        assert float(row["MSREP [%]"]) == expected.msrep
-        assert float(row["MSREP after 1 s [%]"]) == expected.msrep_settled
-        assert row["MSE 95 % half width [(N.m/rad)2]"] == ""
-        assert row["seeds"] == "1"
-    assert float(rows["RESIDUAL"]["MSE of the paper [(N.m/rad)2]"]) == 128.1614
-    assert float(rows["RESIDUAL"]["MSREP of the paper [%]"]) == 0.58
-    assert rows["MODEL-measured"]["MSREP of the paper [%]"] == ""  # the paper has no such row
+        assert row["MSE [(N.m/rad)2]"] == expected.mse
+        assert row["MSREP [%]"] == expected.msrep
+        assert row["MSREP after 1 s [%]"] == expected.msrep_settled
+        assert row["MSE 95 % half width [(N.m/rad)2]"] is None
+        assert row["seeds"] == 1
+    assert rows["RESIDUAL"]["MSE of the paper [(N.m/rad)2]"] == 128.1614
+    assert rows["RESIDUAL"]["MSREP of the paper [%]"] == 0.58
+    assert rows["MODEL-measured"]["MSREP of the paper [%]"] is None  # the paper has no such row
 
 
-def test_mean_and_interval_over_seeds(tmp_path: Path) -> None:
+def test_mean_and_interval_over_seeds() -> None:
     each = [{name: Indices(*[x] * 6) for name in ROWS} for x in (1.0, 2.0, 3.0)]
     result = replace(one_seed("table1"), seeds=[1, 2, 3], indices=each)
-    row = rows_of_table(result, tmp_path)["MODEL"]
-    assert float(row["MSE [(N.m/rad)2]"]) == 2.0
-    assert float(row["MSE 95 % half width [(N.m/rad)2]"]) == pytest.approx(2.48414, rel=1e-5)
-    assert row["seeds"] == "3"
+    row = rows_of_table(result)["MODEL"]
+    assert row["MSE [(N.m/rad)2]"] == 2.0
+    assert row["MSE 95 % half width [(N.m/rad)2]"] == pytest.approx(2.48414, rel=1e-5)
+    assert row["seeds"] == 3
     assert "2.00 +- 2.48" in table(result)
     assert "3 seeds" in conditions(result)
 
 
-def test_index_that_is_not_defined_is_a_dash_and_an_empty_field(tmp_path: Path) -> None:
+def test_index_that_is_not_defined_is_a_dash_and_null() -> None:
     """SENSOR is 0 until the joint deforms."""
     result = one_seed("experiment")
     whole = table(result).split("\n\n")[1]
     cells = {row[0]: row[1:] for row in (re.split("  +", x) for x in whole.splitlines())}
     assert cells["RESIDUAL against SENSOR"][1:] == ["-", "-"]
     assert "-" not in cells["RESIDUAL against SENSOR, relative to true"]
-    row = rows_of_table(result, tmp_path)["RESIDUAL against SENSOR"]
-    assert row["MSREP [%]"] == row["mean error [%]"] == ""
+    row = rows_of_table(result)["RESIDUAL against SENSOR"]
+    assert row["MSREP [%]"] is row["mean error [%]"] is None
     expected = result.indices[0]["RESIDUAL against SENSOR"]
-    assert float(row["MSREP after 1 s [%]"]) == expected.msrep_settled
+    assert row["MSREP after 1 s [%]"] == expected.msrep_settled
 
 
 # Figures

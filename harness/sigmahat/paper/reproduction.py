@@ -101,14 +101,9 @@ def read_result_files(folder: Path) -> tuple[pa.Table, Mapping[str, Mapping[str,
 
 def write_results(result: Result, folder: Path) -> None:
     """Writes table.csv, and a file over time for each estimator."""
-    write_table(result, folder / TABLE)
+    write_csv(folder / TABLE, *_indices(result))
     for name in result.scenario.estimators:
         write_series(result.recording, name, folder / f"{name}.csv")
-
-
-def write_table(result: Result, path: Path) -> None:
-    """Writes the indices of each comparison, with half the width of their 95 % interval."""
-    write_csv(path, *_indices(result))
 
 
 def as_dict(result: Result) -> dict[str, Any]:
@@ -119,7 +114,7 @@ def as_dict(result: Result) -> dict[str, Any]:
 
 
 def _indices(result: Result) -> tuple[list[str], list[list[Any]]]:
-    """Titles and rows of the table."""
+    """Titles and rows of the table, with half the width of the 95 % interval of each index."""
     scenario = result.scenario
     indices = [INDICES[field] for fields in scenario.tables for field in fields]
     head = [ESTIMATION, SEEDS]
