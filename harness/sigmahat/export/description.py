@@ -40,24 +40,17 @@ def _dependencies(known: Sequence[int]) -> dict[str, str]:
     return {"dependencies": " ".join(map(str, known)), "dependenciesKind": kinds}
 
 
-def _add_display_units(root: Element) -> None:
-    """Sets the display unit of every Real whose unit has a display unit."""
-    displayed = {
-        unit.attrib["name"]: display.attrib["name"]
-        for unit in root.findall("UnitDefinitions/Unit")
-        for display in unit.findall("DisplayUnit")
-    }
-    for real in root.findall("ModelVariables/ScalarVariable/Real"):
-        if real.get("unit") in displayed:
-            real.set("displayUnit", displayed[real.attrib["unit"]])
-
-
-def _remove_unused_units(root: Element) -> None:
-    used = {real.get("unit") for real in root.iterfind("ModelVariables/ScalarVariable/Real")}
+def _complete_units(root: Element) -> None:
+    """Removes units that no variable has, and gives each Real the display unit of its unit."""
     for definitions in root.findall("UnitDefinitions"):
         for unit in definitions.findall("Unit"):
-            if unit.attrib["name"] not in used:
+            path = f"ModelVariables/ScalarVariable/Real[@unit='{unit.attrib['name']}']"
+            reals = root.findall(path)
+            if not reals:
                 definitions.remove(unit)
+            for display in unit.findall("DisplayUnit"):
+                for real in reals:
+                    real.set("displayUnit", display.attrib["name"])
 
 
 def complete(root: Element) -> str:
@@ -69,8 +62,7 @@ def complete(root: Element) -> str:
     for reference, variable in enumerate(variables(root)):
         variable.set("valueReference", str(reference))
         variable.attrib.pop("array", None)
-    _remove_unused_units(root)
-    _add_display_units(root)
+    _complete_units(root)
     _add_model_structure(root)
     ElementTree.indent(root)
     canonical = ElementTree.canonicalize(ElementTree.tostring(root, encoding="unicode"))

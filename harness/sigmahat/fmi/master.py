@@ -96,7 +96,10 @@ def simulate(
         for name, estimator in estimators.items():
             slave = instantiate(estimator.fmu, name)
             slave.initialize(estimator.start)
-            _connect(tick, plant_slave, slave, estimator.connections)
+            wires = np.empty(len(estimator.connections))
+            outputs = plant_slave.fmu.references(estimator.connections.values(), "output")
+            tick.get(plant_slave, "Real", outputs, wires)
+            tick.set_real(slave, slave.fmu.references(estimator.connections, "input"), wires)
             tick.step(slave, times)
             recorders[name] = Recorder(slave, estimator.record, len(t))
             recorders[name].add_to(tick)
@@ -126,13 +129,6 @@ def _run_in_pieces(loop: SampleLoop, steps: int, progress: Callable[[int], objec
         took = time.perf_counter() - begin
         size = min(2 * size, _MOST) if took < _PIECE / 2 else max(size // 2, 1)
         first = end
-
-
-def _connect(loop: SampleLoop, plant: Slave, slave: Slave, connections: Mapping[str, str]) -> None:
-    """Passes outputs of the plant to inputs of a slave."""
-    wires = np.empty(len(connections))
-    loop.get(plant, "Real", plant.fmu.references(connections.values(), "output"), wires)
-    loop.set_real(slave, slave.fmu.references(connections.keys(), "input"), wires)
 
 
 def _series(recorder: Recorder, start: Mapping[str, Value], t: NDArray[np.float64]) -> Series:

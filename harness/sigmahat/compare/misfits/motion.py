@@ -50,11 +50,14 @@ def run(experiment: Experiment) -> Motion:
     acting = np.concatenate([[first], tau[:-1]]) if held else tau
     gain = experiment.plant.get("sensor.tau_gain", 1.0)
     columns["tau_measured"] += (_read(experiment, t, tau) - acting) / gain
+    theta_c = np.zeros(len(t))  # of the secondary motor of the AwAS, by its encoder
+    if "r" in inputs:
+        theta_c = _COUNT * np.floor((_RETRACTED - inputs["r"]) / _LEAD / _COUNT + 0.5)
     return Motion(
         {
             "theta": columns["theta_measured"],
             "q": columns["q_measured"],
-            "theta_c": _theta_c(inputs.get("r"), len(t)),
+            "theta_c": theta_c,
             "tau": columns["tau_measured"],
         },
         columns["sigma"],
@@ -187,11 +190,3 @@ def _read(experiment: Experiment, t: Array, tau: Array) -> Array:
         return tau
     mean: Array = (tau + np.concatenate([[0.0], tau[:-1]])) / 2
     return mean
-
-
-def _theta_c(r: Array | None, samples: int) -> Array:
-    """Position of the secondary motor of the AwAS, from its encoder [rad]; 0 without a lever."""
-    if r is None:
-        return np.zeros(samples)
-    rounded: Array = _COUNT * np.floor((_RETRACTED - r) / _LEAD / _COUNT + 0.5)
-    return rounded

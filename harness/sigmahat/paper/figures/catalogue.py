@@ -24,12 +24,14 @@ Lines = Callable[[Axes, Recording, slice], object]  # draws some of the samples
 
 
 def _stacked(*every: Panel) -> Callable[[Recording], Figure]:
-    """The figure with these panels, one below the other."""
+    """The figure with these panels, one below the other, over time."""
 
     def draw(recording: Recording) -> Figure:
-        figure, axes = panels.time_panels(len(every))
-        for own, panel in zip(axes, every, strict=True):
-            panel(own, recording)
+        figure = Figure(figsize=(7.2, 1.2 + 2.5 * len(every)), layout="constrained")
+        own = figure.subplots(len(every), squeeze=False)[:, 0]
+        for axes, panel in zip(own, every, strict=True):
+            axes.set_xlabel(math_axis("t"))
+            panel(axes, recording)
         return figure
 
     return draw
@@ -56,11 +58,14 @@ def _part(lines: Lines, title: str, part: Callable[[Recording], slice]) -> Panel
 
 
 def _reversal(signal: str, half_width: float) -> Callable[[Recording], slice]:
-    """Samples around the first change of the sign of a signal of the plant."""
+    """Samples around the first change of the sign of a signal of the plant after 1 s."""
 
     def part(recording: Recording) -> slice:
-        t = recording.t
-        return window(t, panels.first_reversal(t, recording.plant[signal]), half_width)
+        t, later = recording.t, recording.t > 1.0
+        changes = np.flatnonzero(np.diff(np.sign(recording.plant[signal][later])))
+        # Without a change, the middle.
+        centre = t[later][changes[0]] if len(changes) else t[len(t) // 2]
+        return window(t, float(centre), half_width)
 
     return part
 

@@ -5,7 +5,6 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from sigmahat.fmi.master import Recording
@@ -28,15 +27,6 @@ _ESTIMATORS: dict[str, dict[str, Any]] = {
     "RESIDUAL-paper-prior": {"color": VERMILION, "linestyle": (0, (5, 2))},
 }
 _ERROR_WINDOW = 0.1  # [s]
-
-
-def time_panels(count: int) -> tuple[Figure, list[Axes]]:
-    """Panels one below the other, time on the horizontal axis."""
-    figure = Figure(figsize=(7.2, 1.2 + 2.5 * count), layout="constrained")
-    panels = figure.subplots(count, squeeze=False)[:, 0].tolist()
-    for axes in panels:
-        axes.set_xlabel(math_axis("t"))
-    return figure, panels
 
 
 def line(axes: Axes, t: Array, values: Array, **style: Any) -> None:
@@ -106,10 +96,3 @@ def window(t: Array, centre: float, half_width: float) -> slice:
     """Samples within half_width [s] of centre [s]."""
     first, last = np.searchsorted(t, (centre - half_width, centre + half_width))
     return slice(int(first), int(last) + 1)
-
-
-def first_reversal(t: Array, values: Array) -> float:
-    """Time at which values first change sign after 1 s [s]; the middle without a change."""
-    later = t > 1.0
-    changes = np.flatnonzero(np.diff(np.sign(values[later])))
-    return float(t[later][changes[0]] if len(changes) else t[len(t) // 2])
