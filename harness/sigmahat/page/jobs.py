@@ -107,23 +107,30 @@ class Jobs:
         setup.show()
 
     def _run(self) -> None:
-        self._try(self._look)
+        self._try(None, self._look)
         while True:
             with self._news:
                 self._news.wait_for(lambda: self._text is not None or self._estimate is not None)
                 version, text, last = self._version, self._text, self._estimate
                 self._text = self._estimate = None
             if last is not None:
-                self._try(partial(self._identify_and_estimate, version, last))
+                self._try(version, partial(self._identify_and_estimate, version, last))
             else:
-                self._try(partial(self._check, version, str(text)))
+                self._try(version, partial(self._check, version, str(text)))
 
-    def _try(self, job: Callable[[], object]) -> None:
+    def _try(self, version: int | None, job: Callable[[], object]) -> None:
+        """Does a job for a version of the configuration; None: for the log, which can be read."""
         try:
             job()
+        except _OutdatedError:
+            return
         except Exception as error:  # any: without a message, the page would wait for ever
-            logging.getLogger("sigmahat").exception("a job of the page failed")
-            self._later(partial(self._refused, None, f"a fault of sigmahat: {error!r}"))
+            problem = str(error).removeprefix(f"{self._setup.path}: ")
+            if version is None or not isinstance(error, _REFUSED):
+                logging.getLogger("sigmahat").exception("a job of the page failed")
+                version, problem = None, f"a fault of sigmahat: {error!r}"
+            found = {"problem": problem, "checked": None, "answer": None, "busy": ""}
+            self._later(partial(self._show, version, **found))
 
     def _look(self) -> None:
         setup = self._setup
@@ -148,21 +155,15 @@ class Jobs:
                 self._later(partial(self._show, version, busy=f"The curve: {percent} % ..."))
             done += thousandths
 
-        try:
-            configuration = checked_configuration(tomlkit.parse(text), path)
-            checked = check(log, configuration)
-            busy = "The curve ..."
-            self._later(partial(self._show, version, checked=checked, problem="", busy=busy))
-            with Slave(installed("StiffnessEstimator"), "estimator") as slave:
-                replay = Replay(slave, log, configuration)
-                replay.run(progress=progress)  # an exception in progress ends it
-                found = replay.answer()
-        except _OutdatedError:
-            return
-        except _REFUSED as error:
-            self._later(partial(self._refused, version, str(error).removeprefix(f"{path}: ")))
-        else:
-            self._later(partial(self._show, version, answer=found, busy=""))
+        configuration = checked_configuration(tomlkit.parse(text), path)
+        checked = check(log, configuration)
+        busy = "The curve ..."
+        self._later(partial(self._show, version, checked=checked, problem="", busy=busy))
+        with Slave(installed("StiffnessEstimator"), "estimator") as slave:
+            replay = Replay(slave, log, configuration)
+            replay.run(progress=progress)  # an exception in progress ends it
+            found = replay.answer()
+        self._later(partial(self._show, version, answer=found, busy=""))
 
     def _identify_and_estimate(self, version: int, text: str) -> None:
         """Writes the results, and gives the setup the configuration with what was identified."""
@@ -176,22 +177,15 @@ class Jobs:
 
         setup, document = self._setup, tomlkit.parse(text)
         out = Path("sigmahat-results", setup.log.path.stem, setup.joint)
-        try:
-            if setup.get("modality") != "Sensor":  # else there is no motor to identify
-                found = identify(setup.log, checked_configuration(document, setup.path))
-                update(document, found)
-            self._later(partial(self._show, version, busy="Estimating ..."))
-            configuration = checked_configuration(document, setup.path)
-            findings = rows(check(setup.log, configuration))
-            with output_folder(out) as folder:
-                estimate(setup.log, configuration, folder, findings=findings)
-        except _REFUSED as error:
-            self._later(partial(self._refused, version, str(error).removeprefix(f"{setup.path}: ")))
-        else:
-            self._later(partial(setup.estimated, text, document, out))
-
-    def _refused(self, version: int | None, problem: str) -> None:
-        self._show(version, problem=problem, checked=None, answer=None, busy="")
+        if setup.get("modality") != "Sensor":  # else there is no motor to identify
+            found = identify(setup.log, checked_configuration(document, setup.path))
+            update(document, found)
+        self._later(partial(self._show, version, busy="Estimating ..."))
+        configuration = checked_configuration(document, setup.path)
+        findings = rows(check(setup.log, configuration))
+        with output_folder(out) as folder:
+            estimate(setup.log, configuration, folder, findings=findings)
+        self._later(partial(setup.estimated, text, document, out))
 
     def _show(self, version: int | None, **found: object) -> None:
         """Gives results to the setup, if the results are for its present configuration."""
