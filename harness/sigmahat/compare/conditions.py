@@ -23,8 +23,7 @@ class Case:
     motor_errors: Mapping[str, float] = field(default_factory=dict)
     """Relative errors of motor data [1], by the name of the parameter; empty: no errors, and
     FilteredRegression takes the motor data as exact."""
-    nominal_error: float | None = None
-    """Relative error of a nominal stiffness [1]; None: no nominal stiffness is given."""
+    nominal_error: float | None = None  # of a nominal stiffness, relative [1]; None: none is given
     regression: Mapping[str, Value] = field(default_factory=dict)
     """Further start values of FilteredRegression: standard deviations of its priors, and others."""
 

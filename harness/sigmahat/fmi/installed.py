@@ -34,8 +34,7 @@ def version() -> str:
     return metadata.version("sigmahat")
 
 
-_DISTRIBUTIONS = {"foxglove": "foxglove-sdk"}
-"""Distributions whose name differs from the name of their package."""
+_DISTRIBUTIONS = {"foxglove": "foxglove-sdk"}  # whose name differs from that of their package
 
 
 def how_to_install(package: str | None) -> str | None:

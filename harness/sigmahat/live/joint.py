@@ -118,8 +118,7 @@ class LiveJoint:
         fmu = installed("StiffnessEstimator")
         start = parameters(fmu, configuration)
         self.configuration, ports = configuration, configuration.ports
-        self.name = configuration.joint or "joint"
-        """Name for people and topics; "joint" if the configuration names no joint."""
+        self.name = configuration.joint or "joint"  # name for people and topics
         self._every = fmu.parameters(start)
         configuration.need_ports(str(self._every["modality"]))
         self.T = float(self._every["samplePeriod"])

@@ -26,8 +26,7 @@ from sigmahat.logs import joints as of_file
 from sigmahat.logs.configuration import joints_of, read_configuration, read_document
 from sigmahat.logs.learned import LEARNED, read_learned
 
-ARRIVAL = "arrival"
-"""Column of a recording for messages without a stamp: time of arrival [ns] since 1970."""
+ARRIVAL = "arrival"  # column for messages without a stamp: time of arrival [ns] since 1970
 _ROWS = 1 << 16  # rows of a row group; each group needs 20 kB of memory until the file ends
 _MISSING = -(2**63)
 

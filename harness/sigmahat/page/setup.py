@@ -35,8 +35,7 @@ class Look:
     """A preview of a column."""
 
     span: str  # least and greatest value, or why the column has no values
-    line: Sequence[tuple[float, float]]
-    """Points of a small line in a box of 160 x 28, from its upper left corner."""
+    line: Sequence[tuple[float, float]]  # points in a box of 160 x 28, from its upper left corner
 
 
 class Setup:
@@ -50,21 +49,18 @@ class Setup:
         self.is_edited = False  # whether edits are not written yet
         self.looks: Mapping[str, Look] = {}  # previews of the columns by name; empty at first
         self.joint = ""  # name of the joint that is shown
-        self.busy = "Looking at the columns ..."
-        """The running computation, in words; empty without a computation."""
+        self.busy = "Looking at the columns ..."  # the running computation, in words; else empty
         self.problem = ""  # why the configuration cannot be checked; else empty
         self.checked: Checked | None = None
         self.answer: Answer | None = None
         self.message = ""  # about the last click on a button, or the last value
-        self.changed: Callable[[], object] = lambda: None
-        """Is called after every change of the configuration."""
+        self.changed: Callable[[], object] = lambda: None  # called after changes of the document
         self.asks_to_overwrite = False  # whether a question to overwrite the file is open
         self._asked = 0.0
         self._then: Callable[[], object] | None = None
         self.windows: set[Callable[[], object]] = set()  # functions to call after every change
         self._chosen: Chosen = lambda names: {}
-        self.joints: dict[str, tomlkit.TOMLDocument] = {}
-        """The configurations of the joints by name; empty until they are known."""
+        self.joints: dict[str, tomlkit.TOMLDocument] = {}  # by name; empty until they are known
 
     def show(self) -> None:
         for each in list(self.windows):

@@ -91,14 +91,12 @@ class Experiment:
     torque: Sines  # torque command, on the motor axis [N.m]; not used under control
     lever_arm: Sines | None  # lever arm [m]; None for a joint without a lever arm
     errors: Mapping[str, float]  # relative errors of B and D_theta that the estimator is given [1]
-    estimator: Mapping[str, Value] = field(default_factory=dict)
-    """Start values of the estimator that differ from `settings`."""
+    estimator: Mapping[str, Value] = field(default_factory=dict)  # start values besides `settings`
     T: float = 1e-3  # sample period [s]
     duration: float = 20.0  # [s]
     rest: float = 0.0  # time until the torque begins [s]
     drive: Drive = Drive.LINEAR
-    control: Control | None = None
-    """None: the torque is the command. Else the drive holds the torque of this control."""
+    control: Control | None = None  # the drive holds its torque; None: that of the command
     late: float = 0.0  # delay of the measured torque [s], below 0: it is early; Drive.LINEAR only
     jitter: float = 0.0  # standard deviation of the sample times, divided by T [1]
     load: float = 0.0  # constant external torque on the link [N.m]

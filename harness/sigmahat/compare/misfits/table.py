@@ -12,8 +12,7 @@ from sigmahat.compare.table import with_headings
 from sigmahat.files.tables import aligned, title, write_csv
 
 FIGURES = tuple(Score().figures)  # names of the numbers of a score [%]
-IN_FILE = {"wrong": "confident and over 20 % wrong"}
-"""Titles in a file, if a title is longer than the name."""
+IN_FILE = {"wrong": "confident and over 20 % wrong"}  # titles in a file, if not the name
 
 
 def table(rows: Sequence[Row]) -> str:
