@@ -9,7 +9,7 @@ import pytest
 
 from plant_runs import QUIET, times
 from sigmahat.compare.misfits import motion
-from sigmahat.compare.misfits.conditions import CONDITIONS, Condition, Group
+from sigmahat.compare.misfits.conditions import CONDITIONS, Group
 from sigmahat.compare.misfits.experiment import AWAS, JOINTS, SEA_1K, Experiment, Joint, draw
 from sigmahat.compare.misfits.job import Score, compare, pairs, score, settings
 from sigmahat.runs.scenario import Sine, Sines
@@ -17,14 +17,12 @@ from sigmahat.runs.scenario import Sine, Sines
 EXACT: Mapping[str, float] = {**QUIET, "encoder.theta": 0.0, "encoder.q": 0.0}
 
 
-def condition(name: str) -> Condition:
-    (found,) = (each for each in CONDITIONS if each.name == name)
-    return found
+BY_NAME = {each.name: each for each in CONDITIONS}
 
 
 def short(joint: Joint, name: str = "none", duration: float = 0.5) -> Experiment:
     """The beginning of a condition, measured without rounding and noise."""
-    changed = condition(name).change(draw(joint, 1)).with_plant(EXACT)
+    changed = BY_NAME[name].change(draw(joint, 1)).with_plant(EXACT)
     return replace(changed, duration=duration)
 
 
@@ -134,7 +132,7 @@ def test_scores_add_up_over_instants() -> None:
 
 
 def test_a_gain_of_the_torque_is_an_error_of_its_size_that_the_prior_covers() -> None:
-    (row,) = compare([condition("gain 0.9, prior 0.1")], [AWAS], [1], processes=1)
+    (row,) = compare([BY_NAME["gain 0.9, prior 0.1"]], [AWAS], [1], processes=1)
     factor = 1 / 0.9  # of the measured torque, and so of the stiffness
     figures = row.score.figures
     assert figures["error"] == pytest.approx(100 * (factor - 1), abs=0.5)

@@ -96,10 +96,10 @@ MASK = (1 << 64) - 1
 
 
 @cache
-def normals(seed: int, samples: int = SAMPLES) -> Array:
+def normals(seed: int, samples: int = SAMPLES, h: float = 1e-3) -> Array:
     """Noise of unit variance of tau and of tau_e [size: samples x 2], of a plant at rest."""
     start = {"noise.tau_variance": 1.0, "noise.tau_e_variance": 1.0, "noise.seed": seed}
-    run = run_awas(1e-3, np.zeros((samples, 3)), start, ["tau_measured", "tau_e_measured"])
+    run = run_awas(h, np.zeros((samples, 3)), start, ["tau_measured", "tau_e_measured"])
     return np.column_stack([run["tau_measured"], run["tau_e_measured"]])
 
 
@@ -144,27 +144,20 @@ def test_noise_is_standard_normal_white_and_independent_between_channels_and_see
         assert np.abs(streams[lag:].T @ streams[:-lag]).max() / (SAMPLES - lag) < five
 
 
-def measured(h: float, duration: float) -> Array:
-    """Noise of unit variance of tau in steps of h [s] [size: duration / h + 1]."""
-    torques = np.zeros((round(duration / h) + 1, 3))
-    return run_awas(h, torques, {"noise.tau_variance": 1.0}, ["tau_measured"])["tau_measured"]
-
-
 @pytest.mark.parametrize("steps_in_a_period", [1, 2, 10])
 def test_noise_is_drawn_at_multiples_of_its_period_and_held_in_between(
     steps_in_a_period: int,
 ) -> None:
-    found = measured(1e-3 / steps_in_a_period, 5.0)
-    expected = np.repeat(normals(1)[:5001, 0], steps_in_a_period)
+    found = normals(1, 5000 * steps_in_a_period + 1, 1e-3 / steps_in_a_period)
+    expected = np.repeat(normals(1)[:5001], steps_in_a_period, axis=0)
     np.testing.assert_array_equal(found, expected[: len(found)])
 
 
 def test_noise_in_steps_that_do_not_fit_its_period() -> None:
     """1/60 s is 16 2/3 periods: every third communication point is on the grid."""
-    found = measured(1 / 60, 20.0)
+    found = normals(1, 1201, 1 / 60)
     last = [50 * k // 3 for k in range(len(found))]
-    np.testing.assert_array_equal(found, normals(1)[last, 0])
-    np.testing.assert_array_equal(found[::3], measured(1e-3, 20.0)[::50])
+    np.testing.assert_array_equal(found, normals(1)[last])
 
 
 def test_noise_does_not_depend_on_a_last_step_of_a_moment() -> None:

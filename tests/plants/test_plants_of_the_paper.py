@@ -152,12 +152,17 @@ def test_of_the_pair_friction_gravity_and_external_torque_enter_as_in_the_equati
     assert relative_error(run, reference).max() < 1e-8
 
 
-def test_torque_and_stiffness_are_those_of_the_transmissions() -> None:
-    t = times(1e-3, 0.5)
+def test_outputs_of_the_pair_are_those_of_its_sides() -> None:
+    angles, counts = ("q", "theta_1", "theta_2"), (700.0, 300.0, 500.0)
+    encoders = {f"encoder.{name}": n for name, n in zip(angles, counts, strict=True)}
+    measured = ["q_measured", "theta_measured_1", "theta_measured_2"]
+    of_side = ("phi", "tau_e", "sigma", "tau_measured", "tau_e_measured")
+    t = times(1e-3, 1.0)
     torques = np.column_stack([0.1 * np.sin(9 * t), -0.1 * np.sin(5 * t), np.cos(5 * t)])
-    names = [f"{name}_{i}" for i in (1, 2) for name in ("phi", "tau_e", "sigma")]
     start = {**UNEQUAL, "initial.theta_1": -0.5, "initial.theta_2": 0.6}
-    out = run_plant("AntagonisticVsaPlant", OF_PAIR, 1e-3, torques, start, [*PAIR, *names, "sigma"])
+    start |= {**QUIET, **encoders, "sensor.gain": 1.03}
+    record = [*PAIR, *measured, *(f"{name}_{i}" for i in (1, 2) for name in of_side), "sigma"]
+    out = run_plant("AntagonisticVsaPlant", OF_PAIR, 1e-3, torques, start, record)
     for i in (1, 2):
         k, a = UNEQUAL[f"spring_{i}.k"], UNEQUAL[f"spring_{i}.a"]
         phi = out["q"] - out[f"theta_{i}"]
@@ -165,23 +170,10 @@ def test_torque_and_stiffness_are_those_of_the_transmissions() -> None:
         np.testing.assert_allclose(out[f"phi_{i}"], phi, rtol=0, atol=1e-15)
         np.testing.assert_allclose(out[f"tau_e_{i}"], k * np.sinh(a * phi), rtol=1e-11, atol=1e-14)
         np.testing.assert_allclose(out[f"sigma_{i}"], k * a * np.cosh(a * phi), rtol=1e-11)
+        np.testing.assert_allclose(out[f"tau_measured_{i}"], torques[:, i - 1], rtol=0, atol=1e-15)
+        np.testing.assert_array_equal(out[f"tau_e_measured_{i}"], 1.03 * out[f"tau_e_{i}"])
     np.testing.assert_array_equal(out["sigma"], out["sigma_1"] + out["sigma_2"])
-
-
-def test_encoders_and_sensors_are_those_of_their_side() -> None:
-    angles, counts = ("q", "theta_1", "theta_2"), (700.0, 300.0, 500.0)
-    encoders = {f"encoder.{name}": n for name, n in zip(angles, counts, strict=True)}
-    measured = ["q_measured", "theta_measured_1", "theta_measured_2"]
-    sensors = [f"{n}_{i}" for i in (1, 2) for n in ("tau_e", "tau_measured", "tau_e_measured")]
-    t = times(1e-2, 1.0)
-    torques = np.column_stack([0.1 * np.sin(9 * t), -0.1 * np.sin(5 * t), np.cos(5 * t)])
-    start = {**QUIET, **encoders, "sensor.gain": 1.03}
-    record = [*angles, *measured, *sensors]
-    out = run_plant("AntagonisticVsaPlant", OF_PAIR, 1e-2, torques, start, record)
     for name, reading, n in zip(angles, measured, counts, strict=True):
         expected = round_to_counts(out[name], n)
         np.testing.assert_allclose(out[reading], expected, rtol=1e-14, err_msg=reading)
         assert len(np.unique(expected)) > 10
-    for i in (1, 2):
-        np.testing.assert_allclose(out[f"tau_measured_{i}"], torques[:, i - 1], rtol=0, atol=1e-15)
-        np.testing.assert_array_equal(out[f"tau_e_measured_{i}"], 1.03 * out[f"tau_e_{i}"])
