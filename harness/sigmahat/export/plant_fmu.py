@@ -98,14 +98,17 @@ def _list_variables(
     listed.clear()
     for name in plant.inputs:
         add(name, "input", variability="continuous")
-    depends = _depends(plant)
+    x = ca.vertcat(*(state.symbol for state in plant.states.values()))
+    start = ca.vertcat(*(state.start for state in plant.states.values()))
+    noise = {normal.name() for normal in plant.normals}
     for name, expression in plant.outputs.items():
-        discrete = _has_steps(expression) or SEED in depends[name]
-        variability = "discrete" if discrete else "continuous"
-        on = " ".join(depends[name])
+        # The variables on which the initial value of the output depends.
+        symbols = (s.name() for s in ca.symvar(ca.substitute(expression, x, start)))
+        depends = sorted({SEED if s in noise else s for s in symbols})
+        discrete = _has_steps(expression) or SEED in depends
+        variability, on = "discrete" if discrete else "continuous", " ".join(depends)
         add(name, "output", variability=variability, initial="calculated", depends=on)
     # Start values of states depend on these.
-    start = ca.vertcat(*(state.start for state in plant.states.values()))
     fixed = {symbol.name() for symbol in ca.symvar(start)}
     for name in plant.parameters:
         variability = "fixed" if name in fixed else "tunable"
@@ -122,18 +125,6 @@ _NOISE = f"""<ModelVariables>
  description="Time between two samples of the noise, which is held in between">
 <Real unit="s" start="1e-3" min="1e-9"/></ScalarVariable>
 </ModelVariables>"""
-
-
-def _depends(plant: PlantEquations) -> dict[str, list[str]]:
-    """Names of the variables on which the initial value of each output depends."""
-    x = ca.vertcat(*(state.symbol for state in plant.states.values()))
-    start = ca.vertcat(*(state.start for state in plant.states.values()))
-    noise = {normal.name() for normal in plant.normals}
-    depends = {}
-    for name, expression in plant.outputs.items():
-        symbols = [s.name() for s in ca.symvar(ca.substitute(expression, x, start))]
-        depends[name] = sorted({SEED if s in noise else s for s in symbols})
-    return depends
 
 
 def _has_steps(expression: ca.SX) -> bool:
