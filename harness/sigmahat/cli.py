@@ -40,15 +40,11 @@ for command in (
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the command line and returns the exit status; an error is one line on stderr."""
-    with warnings.catch_warnings():
-        # numpy warns of values that are not finite; the commands report such values themselves.
-        warnings.simplefilter("ignore", RuntimeWarning)
-        return _main(arguments)
-
-
-def _main(arguments: Sequence[str] | None) -> int:
     try:
-        status = int(cli.main(arguments, prog_name="sigmahat", standalone_mode=False) or 0)
+        with warnings.catch_warnings():
+            # numpy warns of values that are not finite; the commands report them themselves.
+            warnings.simplefilter("ignore", RuntimeWarning)
+            status = int(cli.main(arguments, prog_name="sigmahat", standalone_mode=False) or 0)
         sys.stdout.flush()
         return status
     except click.exceptions.NoArgsIsHelpError as error:

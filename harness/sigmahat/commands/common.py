@@ -104,11 +104,13 @@ def for_each_joint(
     """Results of a job by joint: of the requested joint, else of each joint of the configuration.
 
     The job of several joints runs in other processes. If the file names no joint, its name is "".
-    Raises LogError if the log or the configuration cannot be read, and errors of the job.
+    Raises LogError if the log or the configuration cannot be read, errors of the job, and
+    ClickException if the FMU of the estimator is not built.
     """
     from sigmahat.logs.configuration import joints_of, read_document
     from sigmahat.logs.readers.formats import open_log
 
+    need_fmu("StiffnessEstimator")
     open_log(log)  # a missing log is reported before a missing configuration
     joints = [joint] if joint else joints_of(read_document(config), config)
     if len(joints) == 1:

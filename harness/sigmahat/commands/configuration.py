@@ -136,7 +136,6 @@ def check(log: Path, config: Path, joint: str) -> int:
     from sigmahat.checks.findings import as_dict
     from sigmahat.checks.text import summary
 
-    common.need_fmu("StiffnessEstimator")
     with common.errors_in_one_line(config, "--config"):
         checked = common.for_each_joint(log, config, joint, partial(_checked, log, config))
     texts = {name: f"{log} with {config}\n{summary(each)}" for name, each in checked.items()}
@@ -179,7 +178,6 @@ def identify(log: Path, config: Path, joint: str, torque_constant: bool, dry_run
     from sigmahat.identification.write import update
     from sigmahat.logs.configuration import read_document
 
-    common.need_fmu("StiffnessEstimator")
     texts, values = {}, {}
     with common.errors_in_one_line(config, "--config"):
         job = partial(_identified, log, config, torque_constant, dry_run)

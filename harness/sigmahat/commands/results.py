@@ -60,7 +60,6 @@ def estimate(
     from sigmahat.files.tables import aligned
     from sigmahat.logs.estimate import summary, write_joints
 
-    common.need_fmu("StiffnessEstimator")
     if to is not None:
         import_module("mcap")  # report a missing package before the work
     with common.errors_in_one_line(out):
@@ -136,7 +135,6 @@ def validate(log: Path, config: Path, start_from: Path | None, joint: str) -> in
     """
     from sigmahat.validation.validate import summary
 
-    common.need_fmu("StiffnessEstimator")
     start_from = start_from or Path("sigmahat-results", config.stem)
     with common.errors_in_one_line(start_from, "--start-from"):
         job = partial(_validated, log, config, start_from)
