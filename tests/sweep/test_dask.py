@@ -138,4 +138,4 @@ def test_a_worker_with_other_fmus() -> None:
     (first,) = read_plan(None, ("table1",), 1, ("RESIDUAL",)).runs
     with pytest.raises(WorkerError, match="install the same sigmahat on both"):
         execute(first, "of other FMUs")
-    assert execute(first, fmu_digest(["table1"])).failure is None
+    assert execute(first, fmu_digest("table1")).failure is None

@@ -144,7 +144,7 @@ def sweep(
 
 def _run(plan: Plan, done: Records, scheduler: str | None, progress: Progress) -> None:
     """Does the remaining runs, and writes each outcome into the records."""
-    digests = {name: fmu_digest([name]) for name in plan.scenarios}
+    digests = {name: fmu_digest(name) for name in plan.scenarios}
     jobs: list[Callable[[], Outcome]] = [
         partial(execute, run, digests[run.scenario])
         for run in plan.runs

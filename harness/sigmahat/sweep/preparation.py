@@ -2,7 +2,7 @@
 
 import hashlib
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import asdict, replace
 from functools import lru_cache
 
@@ -107,7 +107,8 @@ def models(scenario: Scenario) -> dict[str, Plant | EstimatorFmu]:
     return {PLANT: scenario.plant, **scenario.estimators}
 
 
-def fmu_digest(scenarios: Sequence[str]) -> str:
+@lru_cache
+def fmu_digest(*scenarios: str) -> str:
     """Digest of the installed FMUs of some scenarios: 32 hexadecimal digits."""
     text = hashlib.sha256()
     for name in sorted({str(m.fmu) for each in scenarios for m in models(scenario(each)).values()}):
@@ -117,7 +118,7 @@ def fmu_digest(scenarios: Sequence[str]) -> str:
 
 def sweep_digest(plan: Plan) -> str:
     """Digest that differs between sweeps with different results: 32 hexadecimal digits."""
-    text = hashlib.sha256(fmu_digest(plan.scenarios).encode())
+    text = hashlib.sha256(fmu_digest(*plan.scenarios).encode())
     for run in plan.runs:
         text.update(json.dumps(asdict(run)).encode())
     return text.hexdigest()[:32]
@@ -125,7 +126,7 @@ def sweep_digest(plan: Plan) -> str:
 
 def execute(run: Run, fmus: str) -> Outcome:
     """Does a run. Raises WorkerError if the FMUs here have another digest."""
-    if _digest(run.scenario) != fmus:
+    if fmu_digest(run.scenario) != fmus:
         raise WorkerError(
             "a worker has other FMUs than this machine; install the same sigmahat on both"
         )
@@ -134,8 +135,3 @@ def execute(run: Run, fmus: str) -> Outcome:
     except (FmuError, ValueError) as error:
         return Outcome(run.number, {}, " ".join(str(error).split()))
     return Outcome(run.number, indices, None)
-
-
-@lru_cache
-def _digest(scenario: str) -> str:
-    return fmu_digest([scenario])

@@ -1,13 +1,11 @@
 """The summary of a sweep: means over the seeds, printed, as a CSV file, and for JSON."""
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from sigmahat.files.tables import aligned, write_csv
-from sigmahat.fmi.instance import Value
 from sigmahat.paper.scenarios import SCENARIOS
 from sigmahat.runs.metrics import INDICES, Index, mean_interval
 from sigmahat.sweep.plan import Plan
@@ -16,7 +14,6 @@ from sigmahat.sweep.table import (
     FAILURE,
     SCENARIO,
     Column,
-    ParameterColumn,
     Role,
     SweepTable,
     half_width_title,
@@ -26,17 +23,10 @@ from sigmahat.sweep.table import (
 _ROWS = 30  # rows of a printed summary; summary.csv has all rows
 
 
-@dataclass(frozen=True)
-class Mean:
-    """Indices over the seeds of one scenario, one combination of listed values, one comparison."""
-
-    scenario: str
-    listed: Mapping[ParameterColumn, Value]
-    estimation: str
-    runs: int
-    failed: int
-    indices: Mapping[Index, tuple[float, float]]
-    """Mean and half width of its 95 % interval, over runs that did not fail."""
+Mean = tuple[dict[str, Any], dict[Index, tuple[float, float]]]
+"""A scenario with listed values and a comparison, by title, with the numbers of runs and of failed
+runs; and for each index its mean and half width of its 95 % interval, over runs that did not fail.
+"""
 
 
 @dataclass(frozen=True)
@@ -50,20 +40,19 @@ class SummaryColumn:
 
 def means(sweep: SweepTable) -> list[Mean]:
     """The mean of each group, in the order of the table."""
-    listed = sweep.parameters(Role.LISTED)
-    keys: list[Column] = [SCENARIO, *listed, ESTIMATION]
+    keys: list[Column] = [SCENARIO, *sweep.parameters(Role.LISTED), ESTIMATION]
     groups: dict[tuple[Any, ...], list[int]] = {}
     for row, key in enumerate(zip(*(sweep.values(column) for column in keys), strict=True)):
         groups.setdefault(key, []).append(row)
     failures = sweep.values(FAILURE)
     indices = {index: sweep.values(index) for index in INDICES.values()}
     result = []
-    for (scenario, *values, estimation), rows in groups.items():
+    for key, rows in groups.items():
         good = [row for row in rows if failures[row] is None]
-        given = dict(zip(listed, values, strict=True))
+        about = dict(zip(map(title, keys), key, strict=True))
+        about |= {"runs": len(rows), "failed": len(rows) - len(good)}
         found = {index: _mean([x[row] for row in good]) for index, x in indices.items()}
-        failed = len(rows) - len(good)
-        result.append(Mean(scenario, given, estimation, len(rows), failed, found))
+        result.append((about, found))
     return result
 
 
@@ -77,16 +66,13 @@ def summary_columns(sweep: SweepTable) -> list[SummaryColumn]:
     The columns are the indices in the tables of the scenarios.
     """
     every = means(sweep)
-    names = {each.scenario for each in every}
+    columns = {name: [about[name] for about, _ in every] for name in every[0][0]}
+    names = set(columns[SCENARIO])
     fields = {f for name in names for table in SCENARIOS[name].tables for f in table}
-    columns: dict[str, list[Any]] = {}
-    if len(names) > 1:
-        columns[SCENARIO] = [each.scenario for each in every]
-    columns |= {title(p): [each.listed[p] for each in every] for p in sweep.parameters(Role.LISTED)}
-    columns[ESTIMATION] = [each.estimation for each in every]
-    columns["runs"] = [each.runs for each in every]
-    if any(each.failed for each in every):
-        columns["failed"] = [each.failed for each in every]
+    if len(names) == 1:
+        del columns[SCENARIO]
+    if not any(columns["failed"]):
+        del columns["failed"]
     found = [
         SummaryColumn(name, any(isinstance(v, (str, bool)) for v in own), [_value(v) for v in own])
         for name, own in columns.items()
@@ -95,7 +81,7 @@ def summary_columns(sweep: SweepTable) -> list[SummaryColumn]:
         SummaryColumn(
             index.title("after start-up" if index.settled else ""),
             False,
-            [_cell(*each.indices[index]) for each in every],
+            [_cell(*by_index[index]) for _, by_index in every],
         )
         for field, index in INDICES.items()
         if field in fields
@@ -122,36 +108,19 @@ def write_summary(sweep: SweepTable, path: Path) -> None:
     titles = [each for i in INDICES.values() for each in (title(i), half_width_title(i))]
     every = means(sweep)
     rows = [
-        [*_about(mean).values()]
-        + [None if math.isnan(x) else x for pair in mean.indices.values() for x in pair]
-        for mean in every
+        [*about.values(), *(None if math.isnan(x) else x for pair in found.values() for x in pair)]
+        for about, found in every
     ]
-    write_csv(path, [*_about(every[0]), *titles], rows)
+    write_csv(path, [*every[0][0], *titles], rows)
 
 
 def as_dicts(sweep: SweepTable) -> list[dict[str, object]]:
     """The means for JSON; units are in the names."""
     return [
-        {
-            **_about(mean),
-            **{
-                title(index): {"mean": value, "95 % half width": half}
-                for index, (value, half) in mean.indices.items()
-            },
-        }
-        for mean in means(sweep)
+        about
+        | {title(i): {"mean": mean, "95 % half width": half} for i, (mean, half) in found.items()}
+        for about, found in means(sweep)
     ]
-
-
-def _about(mean: Mean) -> dict[str, object]:
-    """Scenario, listed values and comparison of a mean, by title."""
-    return {
-        "scenario": mean.scenario,
-        **{title(column): value for column, value in mean.listed.items()},
-        "estimation": mean.estimation,
-        "runs": mean.runs,
-        "failed": mean.failed,
-    }
 
 
 def conditions(plan: Plan) -> str:
