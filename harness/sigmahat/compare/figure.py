@@ -31,9 +31,7 @@ def draw(rows: Sequence[Row]) -> Figure:
         shown = [curve[0] for curve in curves if (curve[0].joint.coulomb > 0) is with_friction]
         if shown:
             axes.set_title(_title(shown[0]), fontsize=9)
-        axes.set_xscale("log")
-        axes.set_yscale("log")
-        axes.set_xlabel("frequency of the motor torque [Hz]")
+        axes.set(xscale="log", yscale="log", xlabel="frequency of the motor torque [Hz]")
     panels[0].set_ylabel("MSREP [%]")
     figure.legend(handles=handles, loc="outside lower center", ncols=2, fontsize=8)
     return figure

@@ -108,8 +108,7 @@ def flexibility_torque(axes: Axes, recording: Recording, shown: slice) -> None:
 def stability_factor(axes: Axes, recording: Recording) -> None:
     """Figure 7: stability factor a(k) of the RESIDUAL estimate."""
     line(axes, recording.t, recording.estimators["RESIDUAL"]["a"], color=BLUE, label="RESIDUAL")
-    axes.set_yscale("log")
-    axes.set_ylabel("stability factor $a(k)$ [1]")
+    axes.set(yscale="log", ylabel="stability factor $a(k)$ [1]")
     axes.legend()
 
 
@@ -261,8 +260,7 @@ def over_deformation(
         x, y = estimate[f"phi{side}"][last], estimate[f"{output}{side}"][last]
         few = np.argsort(x)[:: max(1, len(x) // _COUNT)]
         axes.plot(x[few], y[few], color=color, label=name, **_DOTS)
-    axes.set_xlabel(math_axis("phi"))
-    axes.set_ylabel(math_axis(output))
+    axes.set(xlabel=math_axis("phi"), ylabel=math_axis(output))
     axes.locator_params(axis="x", nbins=5)
 
 
