@@ -204,14 +204,11 @@ def need_fmu(name: str) -> None:
 def ready_scenario(name: str) -> Scenario:
     """The scenario with this name, whose FMUs are built.
 
-    Raises UsageError for a name that does not exist, ClickException for an FMU that is not built.
+    Raises ValueError for a name that does not exist, ClickException for an FMU that is not built.
     """
     from sigmahat.paper.scenarios import scenario
 
-    try:
-        found = scenario(name)
-    except ValueError as error:
-        raise click.UsageError(str(error)) from error
+    found = scenario(name)
     need_fmus(found)
     return found
 

@@ -31,7 +31,8 @@ def reproduce(scenario: str, seeds: int, out: Path) -> None:
     from sigmahat.paper.reproduction import as_dict, conditions, reproduce, table, write_results
     from sigmahat.runs.metrics import MSREP_IN_WORDS
 
-    chosen = common.ready_scenario(scenario)
+    with common.errors_in_one_line(out):
+        chosen = common.ready_scenario(scenario)
     if seeds > 1:
         import_module("scipy")  # intervals need scipy: report a missing package before the runs
     numbers = range(1, seeds + 1)

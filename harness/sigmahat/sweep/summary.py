@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from sigmahat.files.tables import aligned, write_csv
+from sigmahat.files import tables
 from sigmahat.paper.scenarios import SCENARIOS
 from sigmahat.runs.metrics import INDICES, Index, mean_interval
 from sigmahat.sweep.plan import Plan
@@ -16,7 +16,6 @@ from sigmahat.sweep.table import (
     Column,
     Role,
     SweepTable,
-    half_width_title,
     title,
 )
 
@@ -93,7 +92,7 @@ def summary(sweep: SweepTable) -> str:
     columns = summary_columns(sweep)
     rows = list(zip(*(column.cells for column in columns), strict=True))
     left = [i for i, column in enumerate(columns) if column.title == ESTIMATION]
-    table = aligned([[column.title for column in columns], *rows[:_ROWS]], left)
+    table = tables.aligned([[column.title for column in columns], *rows[:_ROWS]], left)
     lines = [line.rstrip() for line in table]
     if len(rows) > _ROWS:
         lines.append(f"... {len(rows) - _ROWS} more rows in summary.csv")
@@ -105,13 +104,15 @@ def summary(sweep: SweepTable) -> str:
 
 def write_summary(sweep: SweepTable, path: Path) -> None:
     """Writes every mean and half width with all digits."""
-    titles = [each for i in INDICES.values() for each in (title(i), half_width_title(i))]
+    titles = []
+    for index in INDICES.values():
+        titles += [title(index), tables.title(f"{index.field} 95 % half width", index.unit)]
     every = means(sweep)
     rows = [
         [*about.values(), *(None if math.isnan(x) else x for pair in found.values() for x in pair)]
         for about, found in every
     ]
-    write_csv(path, [*every[0][0], *titles], rows)
+    tables.write_csv(path, [*every[0][0], *titles], rows)
 
 
 def as_dicts(sweep: SweepTable) -> list[dict[str, object]]:

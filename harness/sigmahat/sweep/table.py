@@ -70,11 +70,6 @@ def title(column: Column) -> str:
     return tables.title(name, column.unit)
 
 
-def half_width_title(index: Index) -> str:
-    """Title of the column with half the width of the 95 % interval of a mean."""
-    return tables.title(f"{index.field} 95 % half width", index.unit)
-
-
 RUN, SCENARIO, SEED, ESTIMATION, FAILURE = "run", "scenario", "seed", "estimation", "failure"
 """Columns of every sweep, in addition to columns of parameters and indices."""
 _MEANING = b"sigmahat.column"
