@@ -179,8 +179,8 @@ void sh_misfit_judge_recent(sh_regression_state *state, const sh_parameters *p)
     }
 }
 
-/* Whether there are enough blocks to tell a misfit from chance. */
-static int can_judge(const sh_regression_state *state)
+/* Whether there are enough blocks to forget data that contradict the model. */
+static int can_forget(const sh_regression_state *state)
 {
     const sh_real N = state->blocks.count;
 
@@ -192,7 +192,8 @@ static int can_judge(const sh_regression_state *state)
  *     kappa^2 = max(q, q_recent, 1 + (q - t) max(1, N / 5))  if q > t, else max(1, q, q_recent) .
  *
  * A misfit is a function of the state and repeats with the motion, so its part q - t does not average
- * out over N blocks. With too few blocks, the last judgement stays.
+ * out over N blocks. The first blocks are fewer than p, and q is at least their sum over N. With too few blocks, the last
+ * judgement stays.
  */
 void sh_misfit_judge(sh_regression_state *state, const sh_parameters *p)
 {
@@ -200,12 +201,12 @@ void sh_misfit_judge(sh_regression_state *state, const sh_parameters *p)
     const sh_real N = blocks->count, parameters = (sh_real)state->posterior.information.size;
     sh_real q, t;
 
-    if (!can_judge(state)) {
+    if (!(N >= SH_FEW_BLOCKS)) {
         return;
     }
     q = squares_of(state->friction_drifts ? &blocks->drifting : &blocks->constant, state->beta,
                    blocks->prior) /
-        (N - parameters / 2);
+        (can_forget(state) ? N - parameters / 2 : N);
     t = chance(N) / N;
     state->misfit = sh_fmax(1, sh_fmax(q, blocks->recent_misfit));
     state->variance_factor = 1;
@@ -334,7 +335,7 @@ void sh_forget(sh_regression_state *state, const sh_parameters *p, sh_real time)
         sh_information_forget(&blocks->recent, factor, 1);
         blocks->recent_count *= factor;
     }
-    if (state->variance_factor > SH_CONTRADICTION && can_judge(state)) {
+    if (state->variance_factor > SH_CONTRADICTION && can_forget(state)) {
         forget_data(state, p, moving);
     }
     if (p->regression.drift > 0) {

@@ -172,7 +172,7 @@ static void set_friction_std(sh_regression_state *state, const sh_parameters *p)
 static void plan_refit(sh_regression_state *state, const sh_parameters *p)
 {
     sh_refit *refit = &state->refit;
-    const int is_due = refit->trial == 0 && state->blocks.count >= SH_FIRST_BLOCKS;
+    const int is_due = refit->trial == 0 && state->blocks.count >= SH_FIRST_TRIAL;
 
     refit->trial = is_due ? next_trial(state, p) : 0;
 }
@@ -230,7 +230,7 @@ void sh_refit_take(sh_regression_state *state)
 /* Pause before the next refit [s]. Before there are enough blocks, a refit changes little. */
 static sh_real pause_of(const sh_blocks *blocks)
 {
-    return blocks->count < SH_FIRST_BLOCKS ? SH_FIRST_PAUSE
+    return blocks->count < SH_FIRST_TRIAL ? SH_FIRST_PAUSE
                                            : SH_REFIT_PAUSE * blocks->count * SH_BLOCK;
 }
 

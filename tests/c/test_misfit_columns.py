@@ -186,6 +186,22 @@ def test_data_that_contradict_the_model_are_a_doubt(c: Library) -> None:
     assert DOUBTS[found["doubt"]] == "MISFIT"
 
 
+def test_the_first_misfit_is_a_doubt(c: Library) -> None:
+    """GIVEN a misfit from the first sample on, or none, THEN nothing is confident in the first four
+    blocks of 0.05 s, and in the first 1.4 s only the joint without a misfit."""
+    joint = Joint(duration=1.4, deformation=0.01)
+    clean, contradicted = joint.measurements(), joint.measurements()
+    contradicted[:, 3] += 0.02 * np.sin(3 * 50 * joint.motion[0])
+    values = {"method": 2, "rls.n": 3}
+    found = Estimator(c, values).run(clean)
+    assert not np.any(found["confident"][:200])
+    assert np.all(found["confident"][500:])
+    found = Estimator(c, values).run(contradicted)
+    assert not np.any(found["confident"])
+    assert DOUBTS[found["doubt"][-1]] == "MISFIT"
+    assert found["sigma_std"][-1] < 0.1 * found["sigma"][-1]
+
+
 @pytest.mark.parametrize(("n", "times"), [(1, 32), (2, 32 ** (1 / 3)), (3, 2), (4, 2)])
 def test_a_deformation_far_beyond_the_range_is_a_doubt(c: Library, n: int, times: float) -> None:
     """Where the highest power is over 32 times as large as at range.phi."""

@@ -346,7 +346,7 @@ class Oracle:
 
     def shortest_pause(self) -> float:
         count = self.blocks.count
-        return 0.2 if count < 20 else 0.0101 * 0.05 * count
+        return 0.2 if count < 10 else 0.0101 * 0.05 * count
 
     def end_build(self) -> None:
         """Without the noise in its columns; rows that come until it is used are learned later."""
@@ -379,7 +379,7 @@ class Oracle:
         _, log_determinant = np.linalg.slogdet(A.astype(float))
         return float((right @ inverse(A) @ right - log_determinant) / 2)
 
-    def can_judge(self) -> bool:
+    def can_forget(self) -> bool:
         return self.blocks.count >= 20 and len(self.live.chosen) < self.blocks.count
 
     def judge_recent(self) -> None:
@@ -392,11 +392,11 @@ class Oracle:
     def judge(self) -> None:
         """The misfit of all blocks, or of the recent ones."""
         blocks, N = self.blocks, self.blocks.count
-        if not self.can_judge():
+        if N < 4:
             return
         sums = blocks.walking if self.friction_drifts else blocks.all
         squares = sums.squares(self.beta) - blocks.prior * float(self.beta @ self.beta)
-        whole = squares / (N - len(self.live.chosen) / 2)
+        whole = squares / (N - len(self.live.chosen) / 2 if self.can_forget() else N)
         self.q = max(whole, self.recent_q)
         self.factor = 1.0
         if self.p["regression.memory"] > 0:
@@ -408,7 +408,7 @@ class Oracle:
     def plan(self) -> None:
         """After each pass a trial of the next group, if it has columns."""
         was_trial, self.trial = self.trial != 0, 0
-        if was_trial or self.blocks.count < 20:
+        if was_trial or self.blocks.count < 10:
             return
         number = len(self.used) - 1
         following = [(self.last_trial + k) % number + 1 for k in range(number)]
@@ -444,7 +444,7 @@ class Oracle:
         blocks.recent.fade(keep)
         blocks.recent_count *= keep
         everything = (self.data, blocks.all, blocks.walking)
-        if self.factor > 1.5 and self.can_judge():
+        if self.factor > 1.5 and self.can_forget():
             N = blocks.recent_count
             has_changed = N > 20 and blocks.recent.rest < threshold(N)
             self.changes += has_changed
