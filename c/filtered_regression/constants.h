@@ -83,7 +83,7 @@
  * tried, and the variance factor covers the rest.
  */
 #define SH_UNEXPLAINED ((sh_real)2.25)
-#define SH_UNTRIED_BLOCKS ((sh_real)30)
+#define SH_UNTRIED_BLOCKS ((sh_real)35)
 /* Number of blocks that count [1]: 100 s, so that a misfit that begins after hours is noticed soon. */
 #define SH_MOST_BLOCKS ((sh_real)2000)
 /* Std deviations beyond which a sum of squares is no chance [1]. */
@@ -155,7 +155,7 @@
 #define SH_TIME_OF_STEP ((sh_real)0.0065)
 #define SH_MOST_STEPS 4
 /* Number of blocks from which groups of columns are tried [1]. With 20, errors and misfits of the first 2 s are larger. */
-#define SH_FIRST_TRIAL ((sh_real)10)
+#define SH_FIRST_TRIAL ((sh_real)15)
 /* Pause before [s]: a refit then removes noise (detail 14), and judges the misfit. */
 #define SH_FIRST_PAUSE ((sh_real)0.2)
 /* Gain of the logarithm of the evidence from which a group is used: at first, and for each block [1]. So it

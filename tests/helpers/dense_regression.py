@@ -346,7 +346,7 @@ class Oracle:
 
     def shortest_pause(self) -> float:
         count = self.blocks.count
-        return 0.2 if count < 10 else 0.0101 * 0.05 * count
+        return 0.2 if count < 15 else 0.0101 * 0.05 * count
 
     def end_build(self) -> None:
         """Without the noise in its columns; rows that come until it is used are learned later."""
@@ -408,7 +408,7 @@ class Oracle:
     def plan(self) -> None:
         """After each pass a trial of the next group, if it has columns."""
         was_trial, self.trial = self.trial != 0, 0
-        if was_trial or self.blocks.count < 10:
+        if was_trial or self.blocks.count < 15:
             return
         number = len(self.used) - 1
         following = [(self.last_trial + k) % number + 1 for k in range(number)]
