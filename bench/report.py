@@ -8,11 +8,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from subjects import SIZES
+
 Times = Mapping[str, NDArray[np.float64]]
 """By name of the subject: time for one piece of work in each round [ns]. NaN in a round in which
 the subject did not run."""
 
-SIZES = (3, 6, 18, 40)
 LABELS = {"sigmahat": "sigmahat", "eigen": "Eigen", "covariance": "covariance alone, plain loops"}
 FMPY = "simulate_fmu of FMPy"
 

@@ -1,6 +1,7 @@
 """Measures all times in one run and writes tables: python bench/run.py --help."""
 
 import argparse
+import ctypes
 import time
 from pathlib import Path
 
@@ -9,23 +10,23 @@ import numpy as np
 import subjects
 from report import Times, table
 from sigmahat.fmi.instance import installed
-from subjects import Array, Library, Subject
+from subjects import Array, Subject
 
 ROUNDS = 101
 SAMPLES = 10000  # one period of the torques
 
 
-def verify(library: Library) -> None:
+def verify(library: ctypes.CDLL) -> None:
     """Checks that all subjects compute the same results.
 
     Raises AssertionError, which names the subject that does not.
     """
     for size in subjects.SIZES:
-        data = subjects.regression(size, 2000)
-        information = np.eye(size) / subjects.P_0 + data.F.T @ data.F
-        closed_form = np.linalg.solve(information, data.F.T @ data.y)
-        for make, rls in subjects.recursions(library, size).items():
-            rls.run(data)
+        F, y = subjects.regression(size, 2000)
+        closed_form = np.linalg.solve(np.eye(size) / subjects.P_0 + F.T @ F, F.T @ y)
+        for make in subjects.MAKES:
+            rls = subjects.Recursion(library, make, size)
+            rls.run(F, y)
             np.testing.assert_allclose(rls.eta, closed_form, 0, 1e-9, err_msg=make)
 
     z = subjects.measurements(500)
@@ -55,7 +56,7 @@ def measure(every: list[Subject], rounds: int) -> Times:
     return times
 
 
-def all_subjects(library: Library, samples: int) -> list[Subject]:
+def all_subjects(library: ctypes.CDLL, samples: int) -> list[Subject]:
     """All subjects whose time is measured."""
     z: Array = subjects.measurements(samples)
     return [
@@ -74,7 +75,7 @@ def main() -> None:
     parser.add_argument("--out", type=Path, help="folder for the tables")
     parser.add_argument("--check", action="store_true", help="only check that every subject works")
     arguments = parser.parse_args()
-    library = Library(arguments.build / "libsigmahat_bench.so")
+    library = ctypes.CDLL(str(arguments.build / "libsigmahat_bench.so"))
     verify(library)
     every = all_subjects(library, 100 if arguments.check else SAMPLES)
     times = measure(every, 1 if arguments.check else ROUNDS)

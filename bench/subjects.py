@@ -4,7 +4,6 @@ import ctypes
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import fmpy
@@ -21,6 +20,8 @@ from sigmahat.runs.scenario import Sine, T
 Array = NDArray[np.float64]
 
 SIZES = (3, 6, 18, 40)
+MAKES = ("sigmahat", "eigen")
+"""Recursions that compute an estimate."""
 JOINTS = 30
 P_0 = 1e3
 METHODS = ("Paper2011", "FilteredRegression", "FilteredRegression, 21 columns")
@@ -44,24 +45,14 @@ class Subject:
     """It runs only in every round whose number is a multiple of this."""
 
 
-class Library:
-    """A shared library with subjects in C and C++."""
-
-    def __init__(self, file: Path) -> None:
-        self._library: Any = ctypes.CDLL(str(file))
-
-    def start(self, maker: str, *arguments: Any) -> int:
-        """Address of the object that <maker>_start makes. Raises RuntimeError if it is NULL."""
-        made: int | None = self.function(f"{maker}_start", ctypes.c_void_p)(*arguments)
-        if not made:
-            raise RuntimeError(f"{maker}_start{arguments} refused")
-        return made
-
-    def function(self, name: str, result: Any = None) -> Any:
-        """A function of the library. Pointers are passed to it as ctypes objects."""
-        function = self._library[name]
-        function.restype = result
-        return function
+def started(library: ctypes.CDLL, maker: str, *arguments: Any) -> ctypes.c_void_p:
+    """The object that <maker>_start makes. Raises RuntimeError if it is NULL."""
+    start = library[f"{maker}_start"]
+    start.restype = ctypes.c_void_p
+    made = ctypes.c_void_p(start(*arguments))
+    if not made:
+        raise RuntimeError(f"{maker}_start{arguments} refused")
+    return made
 
 
 def doubles(array: Array) -> Any:
@@ -73,54 +64,42 @@ def doubles(array: Array) -> Any:
 # Least squares
 
 
-@dataclass(frozen=True)
-class Regression:
-    """Samples of a regression whose regressor is a delay line: F(k) = (x(k), x(k-1), ...)."""
+def regression(size: int, samples: int) -> tuple[Array, Array]:
+    """F and y to identify a filter with `size` taps from white noise, with noise on the output.
 
-    F: Array
-    y: Array
-
-
-def regression(size: int, samples: int) -> Regression:
-    """Identification of a filter with `size` taps from white noise, with noise on the output."""
+    The regressor is a delay line: F(k) = (x(k), x(k-1), ...).
+    """
     random = np.random.default_rng(size)
     x = random.standard_normal(samples + size - 1)
     F = np.lib.stride_tricks.sliding_window_view(x, size)[:, ::-1]
     y = F @ random.standard_normal(size) + 0.01 * random.standard_normal(samples)
-    return Regression(np.ascontiguousarray(F), y)
+    return np.ascontiguousarray(F), y
 
 
-class Compiled:
+class Recursion:
     """A recursion of the shared library."""
 
-    def __init__(self, library: Library, make: str, size: int) -> None:
-        self._library, self._make, self._size = library, make, size
-        self._state = ctypes.c_void_p(library.start(make, size, ctypes.c_double(P_0)))
-        self._run = library.function(f"{make}_run")
+    def __init__(self, library: ctypes.CDLL, make: str, size: int) -> None:
+        self._library, self._size = library, size
+        self._state = started(library, make, size, ctypes.c_double(P_0))
 
     @property
     def eta(self) -> Array:
         """Estimate."""
         eta = np.zeros(self._size)
-        self._library.function(f"{self._make}_eta")(self._state, doubles(eta))
+        self._library.recursion_eta(self._state, doubles(eta))
         return eta
 
-    def run(self, data: Regression) -> None:
+    def run(self, F: Array, y: Array) -> None:
         """Processes all samples."""
-        self._run(self._state, doubles(data.F), doubles(data.y), len(data.y))
+        self._library.recursion_run(self._state, doubles(F), doubles(y), len(y))
 
 
-def recursions(library: Library, size: int) -> dict[str, Compiled]:
-    """A new recursion of every make that computes an estimate, by name."""
-    return {make: Compiled(library, make, size) for make in ("sigmahat", "eigen")}
-
-
-def least_squares(library: Library, size: int, samples: int) -> Iterator[Subject]:
+def least_squares(library: ctypes.CDLL, size: int, samples: int) -> Iterator[Subject]:
     """All recursions, and the covariance update alone as the reference."""
     data = regression(size, samples)
-    every = recursions(library, size) | {"covariance": Compiled(library, "covariance", size)}
-    for make, rls in every.items():
-        yield Subject(f"{make} {size}", partial(rls.run, data), samples)
+    for make in (*MAKES, "covariance"):
+        yield Subject(f"{make} {size}", partial(Recursion(library, make, size).run, *data), samples)
 
 
 # Ticks
@@ -136,14 +115,13 @@ def measurements(samples: int) -> Array:
 class Ticks:
     """The estimator of the C library, called without an FMU."""
 
-    def __init__(self, library: Library, method: str) -> None:
-        self._state = ctypes.c_void_p(library.start("tick", method.encode()))
-        self._run = library.function("tick_run")
+    def __init__(self, library: ctypes.CDLL, method: str) -> None:
+        self._library, self._state = library, started(library, "tick", method.encode())
         self.outputs = np.zeros(len(OUTPUTS))
 
     def run(self, z: Array) -> None:
         """Processes all samples."""
-        self._run(self._state, doubles(z), len(z), doubles(self.outputs))
+        self._library.tick_run(self._state, doubles(z), len(z), doubles(self.outputs))
 
 
 class Steps:
@@ -176,7 +154,7 @@ class Steps:
         self._times[:, 0] += self.count * T
 
 
-def ticks(library: Library, z: Array) -> Iterator[Subject]:
+def ticks(library: ctypes.CDLL, z: Array) -> Iterator[Subject]:
     """The tick of the C library, and the same in the FMU."""
     for method in METHODS:
         yield Subject(f"tick {method}", partial(Ticks(library, method).run, z), len(z))
