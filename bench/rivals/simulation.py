@@ -9,13 +9,15 @@ push; `joint.Tendons` says how they run.
 
 import math
 from collections import deque
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from rivals.draw import KINDS, SAMPLE_PERIOD, STD_B, STD_D, STD_GAIN, TIP, drawn
-from rivals.joint import Drive, Instruments, Joint, Link, Motor, Tendons
+from rivals.joint import Drive, Instruments, Joint, Motor
 from rivals.records import Array, JointLog, Known
+from sigmahat.files.templates import environment
 
 STEP = 1e-4  # of the physics [s]
 VELOCITY_LAG = 5e-3  # of the low pass behind the difference of the encoder [s]
@@ -228,91 +230,20 @@ class _Physics:
 
 
 def _mjcf(joint: Joint) -> str:
-    """The model, with an actuator for each motor."""
-    tip = beside = ""
-    if joint.tendons:
-        tip, beside = _slider(joint.tendons), _pulls(joint.tendons)
-    floor = ""
-    if joint.floor is not None:
-        floor = f'<geom type="plane" pos="0 0 {joint.floor!r}" size="5 5 1"/>'
-        tip = f'<geom type="sphere" size="{TIP!r}" pos="0 0 {-joint.links[-1].length!r}"/>'
-    bodies = tip
-    for i in reversed(range(len(joint.motors))):
-        place = f' pos="0 0 {-joint.links[i - 1].length!r}"' if i else ""
-        bodies = (
-            f"<body{place}>{_flange(joint, i)}<body>{_hinge(joint, i)}"
-            f"{_inertia(joint.links[i])}{bodies}</body></body>"
-        )
-    actuators = "".join(
-        f'<motor joint="theta_{i}" gear="{motor.gear!r}"/>' for i, motor in enumerate(joint.motors)
-    )
-    return (
-        f'<mujoco><compiler angle="radian"/>'
-        f'<option timestep="{STEP!r}" integrator="implicitfast" gravity="0 0 {-joint.gravity!r}"/>'
-        f"<worldbody>{floor}{bodies}</worldbody><actuator>{actuators}</actuator>{beside}</mujoco>"
-    )
-
-
-def _flange(joint: Joint, i: int) -> str:
-    """What stands in the body of a motor's flange: hinge, inertia, levers of tendons."""
-    motor, levers = joint.motors[i], ""
-    if joint.tendons:
-        lever, spread = joint.tendons.lever, joint.tendons.spread
-        side, up = lever * math.sin(spread), lever * math.cos(spread)
-        levers = (
-            f'<site name="left" pos="{-side!r} 0 {-up!r}"/>'
-            f'<site name="right" pos="{side!r} 0 {-up!r}"/>'
-        )
-    body = FLANGE * motor.inertia
-    return (
-        f'<joint name="theta_{i}" axis="0 -1 0" armature="{motor.inertia - body!r}"'
-        f' damping="{motor.D * motor.gear**2!r}"'
-        f' frictionloss="{motor.gear * motor.friction.at_rest!r}"'
-        f' solreffriction="{motor.stiction_time!r} 1"/>'
-        f'<inertial pos="0 0 0" mass="1e-6" diaginertia="{body!r} {body!r} {body!r}"/>{levers}'
-    )
-
-
-def _hinge(joint: Joint, i: int) -> str:
-    spring = ""
-    if joint.springs:
-        spring = f' stiffness="{joint.springs[i].stiffness!r} 0 {joint.springs[i].k_3!r}"'
-    damping = joint.tendons.damping if joint.tendons else joint.springs[i].damping
-    return f'<joint name="phi_{i}" axis="0 -1 0"{spring} damping="{damping!r}"/>'
-
-
-def _slider(tendons: Tendons) -> str:
-    """What stands in the body of the link: the eyelet, and the slider."""
-    return (
-        f'<site name="eyelet" pos="0 0 {-tendons.eyelet!r}"/>'
-        f'<body pos="0 0 {-tendons.eyelet - _behind(tendons)!r}">'
-        f'<inertial pos="0 0 0" mass="{SLIDER_MASS!r}"'
-        ' diaginertia="1e-5 1e-5 1e-5"/><site name="slider"/>'
-        f'<joint name="slider" type="slide" axis="0 0 -1" armature="{SLIDER_ARMATURE!r}"/></body>'
-    )
-
-
-def _behind(tendons: Tendons) -> float:
-    """From eyelet to slider [m]."""
-    return 0.05 + tendons.tension / tendons.stiffness
-
-
-def _pulls(tendons: Tendons) -> str:
-    """The tendons, and the servo of their slider."""
-    behind = _behind(tendons)
-    rest = tendons.length(tendons.spread) + behind - tendons.tension / tendons.stiffness
-    pulls = "".join(
-        f'<spatial stiffness="{tendons.stiffness!r}" springlength="0 {rest!r}">'
-        f'<site site="{end}"/><site site="eyelet"/><site site="slider"/></spatial>'
-        for end in ("left", "right")
-    )
-    kp = SERVO * tendons.stiffness
-    kv = DAMPED * math.sqrt(kp * SLIDER_ARMATURE)
-    servo = f'<position joint="slider" kp="{kp!r}" kv="{kv!r}"/>'
-    return f"<tendon>{pulls}</tendon><actuator>{servo}</actuator>"
-
-
-def _inertia(link: Link) -> str:
-    """Mass of a link that hangs down at q = 0."""
-    turning = f"{link.inertia!r} {link.inertia!r} {link.inertia!r}"
-    return f'<inertial pos="0 0 {-link.centre!r}" mass="{link.mass!r}" diaginertia="{turning}"/>'
+    """The model, with an actuator for each motor, and one for the slider of tendons."""
+    values: dict[str, float] = {}
+    if tendons := joint.tendons:
+        behind = 0.05 + tendons.tension / tendons.stiffness  # from eyelet to slider [m]
+        kp = SERVO * tendons.stiffness
+        values = {
+            "side": tendons.lever * math.sin(tendons.spread),
+            "up": tendons.lever * math.cos(tendons.spread),
+            "behind": behind,
+            "rest": tendons.length(tendons.spread) + behind - tendons.tension / tendons.stiffness,
+            "kp": kp,
+            "kv": DAMPED * math.sqrt(kp * SLIDER_ARMATURE),
+        }
+    constants = {"STEP": STEP, "FLANGE": FLANGE, "TIP": TIP}
+    constants |= {"SLIDER_MASS": SLIDER_MASS, "SLIDER_ARMATURE": SLIDER_ARMATURE}
+    template = environment(Path(__file__).parent).get_template("joint.xml")
+    return template.render(joint=joint, tendons=joint.tendons, **constants, **values)
