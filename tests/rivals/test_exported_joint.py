@@ -1,93 +1,70 @@
 """A joint from a log in a simulator: what `export` writes, in MuJoCo and in Drake's parsers."""
 
 import itertools
-from dataclasses import dataclass
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 import tomlkit
-from numpy.typing import NDArray
 
 from recorded_logs import write_log
+from rivals.draw import SAMPLE_PERIOD
+from rivals.joint import Drive, Friction, Instruments, Joint, Link, Motor, Sheet, Spring
+from rivals.records import Array
+from rivals.simulation import run
 from sigmahat.cli import main
 
-Array = NDArray[np.float64]
-T, STEPS, GEAR = 1e-3, 8, 100.0
+GEAR = 100.0
 COUNTS = (4096, 262144)  # a turn of the motor on its axis, of the link
+NOISE = 0.003  # of the torque [N.m]
 
 
-@dataclass(frozen=True)
-class Joint:
-    """A joint that is drawn; all behind the gear."""
+def drawn(seed: int) -> Joint:
+    """A joint with Coulomb and viscous friction, whose spring is linear or hardens."""
+    rng = np.random.default_rng(seed)
+    k_1 = float(np.exp(rng.uniform(np.log(100), np.log(3000))))
+    largest = 40 / k_1  # [rad] about
+    k_3 = k_1 * rng.uniform(0, 1) / largest**2 if seed % 2 else 0.0
+    damping = 1e-3 * k_1 * rng.uniform(0.2, 2)
+    inertia, viscous, coulomb = (rng.uniform(*each) for each in ((0.3, 2), (1, 10), (0.2, 2)))
+    dry, length = Friction(coulomb / GEAR), rng.uniform(0.4, 0.6)
+    counts = round(GEAR * COUNTS[0])
+    return Joint(
+        motors=(Motor(GEAR, inertia / GEAR**2, viscous / GEAR**2, np.inf, dry, 0.02),),
+        springs=(Spring(k_1, k_3, damping),),
+        links=(Link(4.0, length, 0.75 * length, 0.1),),
+        gravity=9.81,
+        drives=(),
+        instruments=(Instruments(True, 0.0, 1e-6, 1.0, NOISE, counts, COUNTS[1]),),
+        sheet=Sheet(1, 1, 1, 1, 1),
+    )
 
-    k_1: float
-    k_3: float
-    damping: float
-    """Of the spring [N.m.s/rad]."""
-    armature: float
-    viscous: float
-    coulomb: float
-    link: float
-    """Length of a rod with a mass at its end [m]."""
 
-    @staticmethod
-    def drawn(seed: int) -> "Joint":
-        rng = np.random.default_rng(seed)
-        k_1 = float(np.exp(rng.uniform(np.log(100), np.log(3000))))
-        largest = 40 / k_1  # [rad] about
-        return Joint(
-            k_1=k_1,
-            k_3=k_1 * rng.uniform(0, 1) / largest**2 if seed % 2 else 0.0,
-            damping=1e-3 * k_1 * rng.uniform(0.2, 2),
-            armature=rng.uniform(0.3, 2.0),
-            viscous=rng.uniform(1, 10),
-            coulomb=rng.uniform(0.2, 2),
-            link=rng.uniform(0.4, 0.6),
-        )
-
-    @property
-    def model(self) -> str:
-        return f"""<mujoco><option timestep="{T / STEPS}" integrator="implicit"/><worldbody>
-          <body><inertial pos="0 0 0" mass="0.01" diaginertia="1e-5 1e-5 1e-5"/>
-            <joint axis="0 1 0" armature="{self.armature}" damping="{self.viscous}"
-                   frictionloss="{self.coulomb}"/>
-            <body><joint axis="0 1 0" stiffness="{self.k_1} 0 {self.k_3}"
-                         damping="{self.damping}"/>
-              <geom type="capsule" size="0.04" density="700" fromto="0 0 0 0 0 -{self.link}"/>
-              <geom type="sphere" size="0.06" pos="0 0 -{self.link}" mass="2"/></body></body>
-          </worldbody></mujoco>"""
-
-    def motion(self, frequencies: tuple[float, ...], seconds: float, seed: int) -> dict[str, Array]:
-        """What a controller of the position makes of it, at 1 kHz."""
-        import mujoco
-
-        model = mujoco.MjModel.from_xml_string(self.model)
-        data, rng, rows = mujoco.MjData(model), np.random.default_rng(seed), []
-        for k in range(round(seconds / T)):
-            waves = zip((0.6, 0.25, 0.1), frequencies, strict=True)
-            target = sum(a * np.sin(2 * np.pi * f * k * T) for a, f in waves)
-            torque = 300.0 * (target - data.qpos[0]) - 20.0 * data.qvel[0]
-            data.qfrc_applied[0] = torque
-            rows.append([k * T, *data.qpos, *data.qvel, torque])
-            for _ in range(STEPS):
-                mujoco.mj_step(model, data)
-        t, theta, phi, _, phi_dot, torque = np.array(rows).T
-        return {
-            "time_s": t,
-            "motor_counts": np.round(theta * GEAR * COUNTS[0] / (2 * np.pi)),
-            "link_counts": np.round((theta + phi) * COUNTS[1] / (2 * np.pi)),
-            "torque_Nm": torque / GEAR + rng.normal(0, 0.003, len(t)),
-            "tau_e": self.k_1 * phi + self.k_3 * phi**3 + self.damping * phi_dot,
-            "phi": phi,
-            "phi_dot": phi_dot,
-        }
+def motion(
+    joint: Joint, frequencies: tuple[float, ...], seconds: float, seed: int
+) -> dict[str, Array]:
+    """What a controller of the position makes of it."""
+    t = SAMPLE_PERIOD * np.arange(round(seconds / SAMPLE_PERIOD), dtype=np.float64)
+    waves = zip((0.6, 0.25, 0.1), frequencies, strict=True)
+    target = np.sum([a * np.sin(2 * np.pi * f * t) for a, f in waves], axis=0)
+    drive = Drive(np.zeros_like(t), target, 300 / GEAR, 20 / GEAR, np.inf)
+    x = run(replace(joint, drives=(drive,)))
+    return {
+        "time_s": t,
+        "motor_counts": np.round(x["theta"] * GEAR * COUNTS[0] / (2 * np.pi)),
+        "link_counts": np.round((x["theta"] + x["phi"]) * COUNTS[1] / (2 * np.pi)),
+        "torque_Nm": x["torque"] + np.random.default_rng(seed).normal(0, NOISE, len(t)),
+        "tau_e": x["tau_e"] + x["damper"],
+        "phi": x["phi"],
+        "phi_dot": np.gradient(x["phi"], SAMPLE_PERIOD),
+    }
 
 
 def estimated(joint: Joint, folder: Path) -> Path:
     """The folder of results of a log of 20 s, by the documented path."""
-    log = joint.motion((0.35, 1.1, 2.3), 20.0, 1)
+    log = motion(joint, (0.35, 1.1, 2.3), 20.0, 1)
     write_log({n: log[n] for n in list(log)[:4]}, folder / "knee.csv")
     configuration = folder / "knee.toml"
     csv = str(folder / "knee.csv")
@@ -135,10 +112,10 @@ def within_band(model_file: Path, log: dict[str, Array]) -> tuple[float, float]:
 @pytest.mark.parametrize("seed", [0, 1])
 def test_the_torque_of_another_run_is_within_the_ranges(seed: int, tmp_path: Path) -> None:
     pytest.importorskip("mujoco", reason="to install MuJoCo: cmake --workflow --preset rivals")
-    joint = Joint.drawn(seed)
+    joint = drawn(seed)
     results = estimated(joint, tmp_path)
     assert main(["export", str(results), "--to", "mjcf", "--quiet"]) == 0
-    share, half = within_band(results / "joint.xml", joint.motion((0.27, 0.9, 2.9), 8.0, 2))
+    share, half = within_band(results / "joint.xml", motion(joint, (0.27, 0.9, 2.9), 8.0, 2))
     assert share > 0.9
     assert half < 0.25
 
@@ -150,7 +127,9 @@ def test_drake_and_mujoco_read_the_other_formats(tmp_path: Path) -> None:
     parsing, tree = (
         pytest.importorskip(f"pydrake.multibody.{name}") for name in ("parsing", "tree")
     )
-    joint = Joint.drawn(2)
+    joint = drawn(2)
+    (motor,), (flexible,) = joint.motors, joint.springs
+    viscous, coulomb = motor.D * GEAR**2, motor.friction.K_c * GEAR
     results = estimated(joint, tmp_path)
     for kind in ("sdf", "drake", "urdf"):
         assert main(["export", str(results), "--to", kind, "--quiet"]) == 0
@@ -159,12 +138,12 @@ def test_drake_and_mujoco_read_the_other_formats(tmp_path: Path) -> None:
         parsing.Parser(plant).AddModels(str(results / file))
         plant.Finalize()
         spring = plant.get_force_element(tree.ForceElementIndex(1))
-        assert spring.default_stiffness() == pytest.approx(joint.k_1, rel=0.05)
+        assert spring.default_stiffness() == pytest.approx(flexible.stiffness, rel=0.05)
         damping = plant.GetJointByName("joint_motor").default_damping()
-        assert damping == pytest.approx(joint.viscous, rel=0.1)
+        assert damping == pytest.approx(viscous, rel=0.1)
     (drive,) = map(plant.get_joint_actuator, plant.GetJointActuatorIndices())
     reflected = drive.default_rotor_inertia() * drive.default_gear_ratio() ** 2
-    assert reflected == pytest.approx(joint.armature, rel=0.05)
+    assert reflected == pytest.approx(motor.inertia, rel=0.05)
     model = mujoco.MjModel.from_xml_path(str(results / "joint.urdf"))
-    assert model.dof_damping[0] == pytest.approx(joint.viscous, rel=0.1)
-    assert model.dof_frictionloss[0] == pytest.approx(joint.coulomb, rel=0.1)
+    assert model.dof_damping[0] == pytest.approx(viscous, rel=0.1)
+    assert model.dof_frictionloss[0] == pytest.approx(coulomb, rel=0.1)
