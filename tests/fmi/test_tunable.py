@@ -6,13 +6,12 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-import fmpy
 import numpy as np
 import pytest
 
 import sigmahat
 from c_library import MEASUREMENTS, Estimator, load
-from fmi_instance import OK
+from fmi_instance import OK, unpacked
 from fmi_runs import ESTIMATORS, FMI2, OTHER_THAN_0, PLANTS, SIGNALS, names
 
 T = 1e-3  # s
@@ -69,7 +68,7 @@ def other_value(name: str, variable: Any) -> float:
 
 SCALARS = [
     v.name
-    for v in fmpy.read_model_description(str(sigmahat.fmu("StiffnessEstimator"))).modelVariables
+    for v in unpacked(sigmahat.fmu("StiffnessEstimator"))[0].modelVariables
     if v.causality == "output" and "[" not in v.name and v.name != "valid"
 ]
 ETA = [(i, j) for i in range(8) for j in range(5)]
@@ -79,7 +78,7 @@ def tunables(fmus: list[str]) -> list[tuple[str, str]]:
     return [
         (fmu, variable.name)
         for fmu in fmus
-        for variable in fmpy.read_model_description(str(sigmahat.fmu(fmu))).modelVariables
+        for variable in unpacked(sigmahat.fmu(fmu))[0].modelVariables
         if variable.variability == "tunable"
     ]
 
