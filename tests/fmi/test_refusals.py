@@ -33,31 +33,24 @@ def error_of(fmu: Any) -> str:
 REFUSED_BY_A_RELATION = {("filter.V_max", "min")}
 
 
-def initialised(fmu: Instance, name: str, value: float) -> tuple[int, str]:
-    """The first status that is not OK when a parameter is set and initialised, and its message."""
+def refusal(fmu: Instance, name: str, value: float) -> str:
+    """The message when a parameter is set and initialised; empty if it is accepted."""
     assert fmu.call("Reset") == OK
-    status = fmu.set(name, value)
-    if status == OK:
-        assert fmu.enter() == OK
-        status = fmu.exit()
-    return status, fmu.last_message if status != OK else ""
+    if fmu.set(name, value) == OK and fmu.enter() == OK and fmu.exit() == OK:
+        return ""
+    return error_of(fmu)
 
 
 @every_fmu
 def test_a_parameter_at_its_limit_is_accepted_and_beyond_it_refused_by_its_name(name: str) -> None:
     with FMI2(name) as fmu:
         checked = 0
-        for parameter, variable in fmu.variables.items():
-            if variable.causality != "parameter":
-                continue
-            for which, limit, beyond in limits(variable):
+        for parameter in names(fmu, "parameter"):
+            for which, limit, beyond in limits(fmu.variables[parameter]):
                 if math.isfinite(limit):
-                    status, message = initialised(fmu, parameter, limit)
-                    by_relation = (parameter, which) in REFUSED_BY_A_RELATION
-                    assert status == (ERROR if by_relation else OK), message
-                status, message = initialised(fmu, parameter, beyond)
-                assert status == ERROR, (parameter, beyond)
-                assert parameter in message
+                    refused = refusal(fmu, parameter, limit) != ""
+                    assert refused == ((parameter, which) in REFUSED_BY_A_RELATION), parameter
+                assert parameter in refusal(fmu, parameter, beyond)
                 checked += 1
         assert checked > 20
 
