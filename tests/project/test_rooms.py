@@ -16,15 +16,9 @@ Graph = Mapping[str, set[str]]
 
 def modules() -> dict[str, Path]:
     """Files by name; not the front door, which names what is public wherever it is."""
-    paths = {
-        path.relative_to(PACKAGE).with_suffix("").parts: path for path in PACKAGE.rglob("*.py")
-    }
-    names = {".".join(("sigmahat", *parts)): path for parts, path in paths.items()}
-    return {
-        name.removesuffix(".__init__"): path
-        for name, path in names.items()
-        if name != "sigmahat.__init__"
-    }
+    files = (path for path in PACKAGE.rglob("*.py") if path != PACKAGE / "__init__.py")
+    parts = {path: path.relative_to(PACKAGE.parent).with_suffix("").parts for path in files}
+    return {".".join(names).removesuffix(".__init__"): path for path, names in parts.items()}
 
 
 def imported(path: Path) -> Iterator[str]:
