@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rivals.joint import Drive, Friction, Instruments, Joint, Link, Motor, Sheet, Spring, Tendons
-from rivals.records import Array
+from rivals.records import STD_B, STD_D, STD_GAIN, Array
 
 Range = tuple[float, float]
 Rng = np.random.Generator
@@ -98,12 +98,6 @@ LARGEST_SWING: Range = (0.3, 1.0)  # [rad]
 CENTRING = 0.3  # bandwidth of what keeps a joint near zero while a torque is fed forward [Hz]
 SPRING_STANDS = 1.5  # torque of the spring by that of the motor at its peak, at most
 LARGEST_PHI = 0.2  # [rad]
-
-
-# Relative standard deviations of the data sheets, as drawn, and as the methods are given them.
-STD_B = 0.05
-STD_D = 0.2
-STD_GAIN = 0.015
 
 
 def drawn(kind: str, seed: int) -> Joint:

@@ -13,7 +13,7 @@ import numpy as np
 from scipy import signal
 
 import sigmahat
-from rivals.records import Array, Estimate, JointLog, Known
+from rivals.records import STD_B, STD_D, STD_GAIN, Array, Estimate, JointLog, Known
 from sigmahat.fmi.instance import Value
 
 CONFIDENT = 0.1
@@ -81,10 +81,10 @@ def _filtered_regression(log: JointLog) -> Estimate:
             "range.phi": known.range_phi,
             "range.setPoint": _Spring(log).range_theta_c,
             "prior.tau_e": known.range_tau_e,
-            "prior.B": known.relative_std_B,
-            "prior.D_theta": known.relative_std_D_theta,
+            "prior.B": STD_B,
+            "prior.D_theta": STD_D,
             "prior.tau_coulomb": known.tau_coulomb,
-            "prior.torque_gain": known.relative_std_gain,
+            "prior.torque_gain": STD_GAIN,
         },
     )
 
@@ -159,7 +159,7 @@ def _least_squares(log: JointLog) -> Estimate:
     beta, covariance = _solve(X, y, log.known)
     stiffness = slope @ beta[SPRING:]
     variance = np.sum((slope @ covariance[SPRING:, SPRING:]) * slope, axis=1)
-    std = np.hypot(np.sqrt(np.maximum(variance, 0.0)), log.known.relative_std_gain * stiffness)
+    std = np.hypot(np.sqrt(np.maximum(variance, 0.0)), STD_GAIN * stiffness)
     confident = np.isfinite(stiffness) & np.isfinite(std) & (std < CONFIDENT * stiffness)
     return Estimate(stiffness, std, confident, time.perf_counter() - begin)
 
@@ -190,7 +190,7 @@ def _dynamics(log: JointLog) -> float:
     T, counts = log.sample_period, log.known.counts_theta
     segment = min(len(log.theta), round(8 / T))
     f, density = signal.welch(log.theta, 1 / T, nperseg=segment, detrend="linear")
-    std = 2 * np.pi / counts / np.sqrt(12) if counts else 0.0  # of the rounding of the encoder
+    std = 2 * np.pi / counts / np.sqrt(12)  # of the rounding of the encoder
     rounding = 2 * T * std**2  # white, one-sided density
     power = (2 * np.pi * f) ** 2 * np.where(density > 4 * rounding, density, 0.0)
     if not power.sum() > 0:
@@ -205,12 +205,11 @@ def _solve(X: Array, y: Array, known: Known) -> tuple[Array, Array]:
     X = X / scale
     mean, information = np.zeros(len(scale)), np.zeros(len(scale))  # of the data sheet
     for column, value, relative in (
-        (INERTIA, known.B, known.relative_std_B),
-        (VISCOUS, known.D_theta, known.relative_std_D_theta),
+        (INERTIA, known.B, STD_B),
+        (VISCOUS, known.D_theta, STD_D),
     ):
         mean[column] = value * scale[column]
-        if value and relative:
-            information[column] = (relative * value * scale[column]) ** -2
+        information[column] = (relative * value * scale[column]) ** -2
     beta = np.linalg.lstsq(X, y)[0]
     for _ in range(2):  # the first time the residual is that without the rows of the data sheet
         residual = y - X @ beta

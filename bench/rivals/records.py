@@ -7,6 +7,11 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+# Relative standard deviations of the data sheets, as drawn, and as the methods are given them.
+STD_B = 0.05
+STD_D = 0.2
+STD_GAIN = 0.015  # of the measured torque, which no log shows
+
 
 @dataclass(frozen=True)
 class Known:
@@ -15,13 +20,10 @@ class Known:
     gamma: float  # gear ratio
     B: float  # motor inertia on the motor's axis [kg.m2]
     D_theta: float  # viscous friction on the motor's axis [N.m.s/rad]
-    relative_std_B: float
-    relative_std_D_theta: float
-    relative_std_gain: float  # of the measured torque, which no log shows
     tau_coulomb: float  # largest plausible Coulomb friction on the motor's axis [N.m]
     noise_tau: float  # standard deviation of the measured motor torque [N.m]
-    counts_theta: int  # counts of the motor encoder per turn behind the gear; 0: not quantised
-    counts_q: int  # counts of the link encoder per turn; 0: not quantised
+    counts_theta: int  # counts of the motor encoder per turn behind the gear
+    counts_q: int  # counts of the link encoder per turn
     range_phi: float  # largest expected deformation [rad]
     range_tau_e: float  # largest expected torque of the spring [N.m]
 

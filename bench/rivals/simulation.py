@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from rivals.draw import KINDS, SAMPLE_PERIOD, STD_B, STD_D, STD_GAIN, TIP, drawn
+from rivals.draw import KINDS, SAMPLE_PERIOD, TIP, drawn
 from rivals.joint import Drive, Instruments, Joint, Motor
 from rivals.records import Array, JointLog, Known
 from sigmahat.files.templates import environment
@@ -66,9 +66,6 @@ def log(kind: str, seed: int, run: Run, joint: Joint, rng: np.random.Generator) 
             gamma=motor.gear,
             B=sheet.B * motor.B,
             D_theta=sheet.D * motor.D,
-            relative_std_B=STD_B,
-            relative_std_D_theta=STD_D,
-            relative_std_gain=STD_GAIN,
             tau_coulomb=sheet.coulomb * motor.friction.at_rest,
             noise_tau=tools.noise,
             counts_theta=tools.counts_theta,

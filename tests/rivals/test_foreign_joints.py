@@ -13,7 +13,7 @@ import pytest
 
 from rivals.draw import KINDS, SAMPLE_PERIOD, drawn
 from rivals.joint import Friction, Joint, Tendons
-from rivals.records import Array
+from rivals.records import STD_B, STD_D, Array
 from rivals.simulation import Run, log
 from rivals.simulation import run as simulate
 
@@ -119,5 +119,5 @@ def test_a_log_is_what_the_instruments_make_of_the_run(kind: str) -> None:
     assert np.std(noise) == pytest.approx(known.noise_tau, rel=0.06)
     assert known.range_phi >= np.abs(x["phi"]).max()
     assert known.range_tau_e >= np.abs(made.tau_e).max()
-    assert abs(known.B / motor.B - 1) < 5 * known.relative_std_B
-    assert abs(known.D_theta / motor.D - 1) < 5 * known.relative_std_D_theta
+    assert abs(known.B / motor.B - 1) < 5 * STD_B
+    assert abs(known.D_theta / motor.D - 1) < 5 * STD_D
