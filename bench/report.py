@@ -23,16 +23,13 @@ def ratio(times: Times, one: str, other: str) -> float:
     return float(np.nanmedian(times[one] / times[other]))
 
 
-Row = tuple[str, str, str, bool]
-"""Quantity, required value, measured value, whether it is met."""
+def _requirements(times: Times) -> Iterator[str]:
+    """Rows of the table: quantity, required value, measured value, whether it is met."""
 
-
-def _requirements(times: Times) -> Iterator[Row]:
-    """Rows of the table."""
-
-    def at_most(what: str, value: float, limit: float, unit: str) -> Row:
-        digits = 2 if abs(value) < 100 else 0
-        return what, f"<= {limit:g} {unit}", f"{value:.{digits}f} {unit}", value <= limit
+    def at_most(what: str, value: float, limit: float, unit: str) -> str:
+        measured = f"{value:.{2 if abs(value) < 100 else 0}f} {unit}"
+        met = "yes" if value <= limit else "no"
+        return f"| {what} | <= {limit:g} {unit} | {measured} | {met} |"
 
     tick, own, one = "tick Paper2011", "sigmahat 18", "Estimator.run"
     for what, subject, other, limit in (
@@ -71,9 +68,7 @@ def _duration(ns: float) -> str:
 def table(times: Times) -> str:
     """All tables as Markdown."""
     lines = [f"Measured on {_processor()}.", "", "| quantity | required | measured | met |"]
-    lines += ["|---|---|---|---|"]
-    for what, required, measured, met in _requirements(times):
-        lines.append(f"| {what} | {required} | {measured} | {'yes' if met else 'no'} |")
+    lines += ["|---|---|---|---|", *_requirements(times)]
 
     lines += ["", "Least squares, one sample, median (min) [ns]:", ""]
     lines += ["| | " + " | ".join(f"{n} parameters" for n in SIZES) + " |", "|---" * 5 + "|"]
