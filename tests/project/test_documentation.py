@@ -28,14 +28,6 @@ def text(element: Any) -> str:
     return "".join(parts)
 
 
-def items(root: Any, variable: Any) -> list[tuple[str, str]]:
-    """Value and name, and description, of each item of an enumeration; of others none."""
-    path = f"TypeDefinitions/SimpleType[@name='{variable[0].get('declaredType')}']//Item"
-    return [
-        (f"{i.get('value')} {i.get('name')}", i.get("description")) for i in root.iterfind(path)
-    ]
-
-
 def test_the_tables_list_the_variables_of_the_model_description(files: dict[str, bytes]) -> None:
     rows: dict[str, tuple[Any, ...]] = {}
     for row in etree.fromstring(files[INDEX]).iterfind(".//tbody/tr"):
@@ -51,14 +43,18 @@ def test_the_tables_list_the_variables_of_the_model_description(files: dict[str,
         assert (variability, description) == (v.get("variability"), v.get("description"))
         for limit in (v[0].get("min"), v[0].get("max")):
             assert limit is None or limit in limits
-        expected = items(root, v)
-        assert listed == [part for item in expected for part in item]
+        items = f"TypeDefinitions/SimpleType[@name='{v[0].get('declaredType')}']//Item"
+        expected = {
+            f"{item.get('value')} {item.get('name')}": item.get("description")
+            for item in root.iterfind(items)
+        }
+        assert listed == [part for item in expected.items() for part in item]
         if v[0].get("start") is None:
             assert start == ""
         elif v[0].tag == "Real":
             assert float(start.split()[0]) == pytest.approx(float(v[0].get("start")), rel=1e-5)
         elif expected:
-            assert f"{v[0].get('start')} {start}" in dict(expected)
+            assert f"{v[0].get('start')} {start}" in expected
         else:
             assert start
 
