@@ -23,9 +23,7 @@ def files(request: pytest.FixtureRequest) -> dict[str, bytes]:
 
 def text(element: Any) -> str:
     """The text that a reader sees, without the items of an enumeration."""
-    parts = [element.text or ""]
-    parts += [text(e) + (e.tail or "") for e in element if e.get("class") != "items"]
-    return "".join(parts)
+    return "".join(element.xpath(".//text()[not(ancestor::*[@class='items'])]"))
 
 
 def test_the_tables_list_the_variables_of_the_model_description(files: dict[str, bytes]) -> None:
