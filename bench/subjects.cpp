@@ -19,7 +19,9 @@ public:
     virtual ~Recursion() = default;
     // Takes samples F [size: samples x size], y [size: samples] in order.
     virtual void run(const double *F, const double *y, int samples) = 0;
-    virtual void eta(double *to) const = 0;
+    virtual void eta(double *) const
+    {
+    }
 };
 
 class Own final : public Recursion {
@@ -92,33 +94,23 @@ public:
 
     void run(const double *F, const double *, int samples) override
     {
-        for (int k = 0; k < samples; ++k) {
-            update(F + k * size);
-        }
-    }
+        for (int k = 0; k < samples; ++k, F += size) {
+            double PF[size], K[size], S = 1.0;
 
-    void eta(double *) const override
-    {
-    }
-
-private:
-    void update(const double *F)
-    {
-        double PF[size], K[size], S = 1.0;
-
-        for (int i = 0; i < size; ++i) {
-            PF[i] = 0.0;
-            for (int j = 0; j < size; ++j) {
-                PF[i] += P[i][j] * F[j];
+            for (int i = 0; i < size; ++i) {
+                PF[i] = 0.0;
+                for (int j = 0; j < size; ++j) {
+                    PF[i] += P[i][j] * F[j];
+                }
+                S += F[i] * PF[i];
             }
-            S += F[i] * PF[i];
-        }
-        for (int i = 0; i < size; ++i) {
-            K[i] = PF[i] / S;
-        }
-        for (int i = 0; i < size; ++i) {
-            for (int j = 0; j < size; ++j) {
-                P[i][j] -= K[i] * PF[j];
+            for (int i = 0; i < size; ++i) {
+                K[i] = PF[i] / S;
+            }
+            for (int i = 0; i < size; ++i) {
+                for (int j = 0; j < size; ++j) {
+                    P[i][j] -= K[i] * PF[j];
+                }
             }
         }
     }
@@ -146,24 +138,6 @@ struct Tick {
     sh_estimator estimator;
     sh_estimate estimate;
 };
-
-bool choose(sh_parameters &p, const char *method)
-{
-    sh_prior_parameters &prior = p.prior;
-
-    if (std::strcmp(method, "Paper2011") == 0) {
-        return true;
-    }
-    p.method = SH_METHOD_FILTERED_REGRESSION;
-    prior.B = 0.03;
-    if (std::strcmp(method, "FilteredRegression") == 0) {
-        return true;
-    }
-    prior.bias = prior.damping = prior.load_friction = prior.eccentric = 0;
-    prior.delay = prior.reversal = 0;
-    prior.power = prior.gap = prior.hysteresis = prior.eccentric_motor = 0;
-    return std::strcmp(method, "FilteredRegression, 21 columns") == 0;
-}
 
 } // namespace
 
@@ -199,11 +173,20 @@ void recursion_eta(const Recursion *rls, double *eta)
 Tick *tick_start(const char *method)
 {
     Tick *own = new Tick;
+    sh_prior_parameters &prior = own->parameters.prior;
     sh_violation violation;
 
     sh_parameters_default(&own->parameters);
-    if (!choose(own->parameters, method) ||
-        sh_parameters_check(&own->parameters, &violation) != 0) {
+    if (std::strcmp(method, "Paper2011") != 0) {
+        own->parameters.method = SH_METHOD_FILTERED_REGRESSION;
+        prior.B = 0.03;
+    }
+    if (std::strcmp(method, "FilteredRegression, 21 columns") == 0) {
+        prior.bias = prior.damping = prior.load_friction = prior.eccentric = 0;
+        prior.delay = prior.reversal = 0;
+        prior.power = prior.gap = prior.hysteresis = prior.eccentric_motor = 0;
+    }
+    if (sh_parameters_check(&own->parameters, &violation) != 0) {
         return nullptr;
     }
     sh_estimator_start(&own->estimator, &own->parameters, &own->estimate);
