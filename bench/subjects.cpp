@@ -94,23 +94,29 @@ public:
 
     void run(const double *F, const double *, int samples) override
     {
-        for (int k = 0; k < samples; ++k, F += size) {
-            double PF[size], K[size], S = 1.0;
+        for (int k = 0; k < samples; ++k) {
+            update(F + k * size);
+        }
+    }
 
-            for (int i = 0; i < size; ++i) {
-                PF[i] = 0.0;
-                for (int j = 0; j < size; ++j) {
-                    PF[i] += P[i][j] * F[j];
-                }
-                S += F[i] * PF[i];
+private:
+    void update(const double *F)
+    {
+        double PF[size], K[size], S = 1.0;
+
+        for (int i = 0; i < size; ++i) {
+            PF[i] = 0.0;
+            for (int j = 0; j < size; ++j) {
+                PF[i] += P[i][j] * F[j];
             }
-            for (int i = 0; i < size; ++i) {
-                K[i] = PF[i] / S;
-            }
-            for (int i = 0; i < size; ++i) {
-                for (int j = 0; j < size; ++j) {
-                    P[i][j] -= K[i] * PF[j];
-                }
+            S += F[i] * PF[i];
+        }
+        for (int i = 0; i < size; ++i) {
+            K[i] = PF[i] / S;
+        }
+        for (int i = 0; i < size; ++i) {
+            for (int j = 0; j < size; ++j) {
+                P[i][j] -= K[i] * PF[j];
             }
         }
     }
