@@ -18,9 +18,9 @@ from numpy.typing import NDArray
 
 import sigmahat
 from c_sources import REPOSITORY
+from fmi_instance import unpacked
 from fmi_runs import OTHER_THAN_0, PLANTS
 from modelica_package import FILES, NO_NOISE, PACKAGE, compiled, modification
-from sigmahat.export.templates import render, variables
 from sigmahat.fmi.master import Plant, simulate
 from sigmahat.fmi.series import Series
 from sigmahat.runs.scenario import Sine, T
@@ -165,28 +165,19 @@ AGREEMENT = 1e-6
 
 
 def fmu_variables(plant: str) -> dict[str, Any]:
-    root = render(REPOSITORY / "modelDescription" / f"{plant}.xml", sigmahat.__version__)
-    return {str(v.get("name")): v for v in variables(root)}
+    return {v.name: v for v in unpacked(sigmahat.fmu(plant))[0].modelVariables}
 
 
 def run(
     plant: str, inputs: Mapping[str, Sine], start: Mapping[str, float], duration: float
 ) -> tuple[Series, dict[str, NDArray[np.float64]]]:
-    """The outputs of the FMU without noise, and those of the model from the same parameters, at
-    every T.
-    """
-    declared = fmu_variables(plant)
-    names = [n for n, v in declared.items() if v.get("causality") == "output"]
+    """The outputs of the FMU without noise and of the model, at every T, under all inputs."""
+    names = [n for n, v in fmu_variables(plant).items() if v.causality == "output"]
     silent = {"noise.tau_variance": 0.0, "noise.tau_e_variance": 0.0}
     recording = simulate(
         Plant(plant, {**silent, **start}, inputs, names), {}, T, round(duration / T)
     )
-    constants = {
-        n: float(v[0].get("start"))
-        for n, v in declared.items()
-        if v.get("causality") == "input" and n not in inputs
-    }
-    equations = [f"p.{name} = {value!r};" for name, value in constants.items()]
+    equations = []
     for name, s in inputs.items():
         phase = f"{2 * math.pi * s.frequency!r}*time + {s.phase!r}"
         equations.append(f"p.{name} = {s.amplitude!r}*sin({phase});")
@@ -208,10 +199,10 @@ def other_values(plant: str) -> dict[str, float]:
     """Every parameter of the plant other than it is, but for the noise."""
     changed = {}
     for number, (name, v) in enumerate(fmu_variables(plant).items()):
-        if v.get("causality") == "parameter" and not name.startswith(("noise.", "signal.")):
-            value = float(v[0].get("start"))
+        if v.causality == "parameter" and not name.startswith(("noise.", "signal.")):
+            value = float(v.start)
             factor = 1 + 0.1 * math.sin(number)
-            changed[name] = value * factor if value else OTHER_THAN_0[v[0].get("unit")] * factor
+            changed[name] = value * factor if value else OTHER_THAN_0[v.unit] * factor
     return changed
 
 
@@ -219,7 +210,7 @@ def other_values(plant: str) -> dict[str, float]:
 @pytest.mark.parametrize("plant", PLANTS)
 def test_every_output_is_that_of_the_fmu(plant: str, as_it_starts: bool, duration: float) -> None:
     """So every parameter and every input has the effect that it has in the FMU."""
-    names = [n for n, v in fmu_variables(plant).items() if v.get("causality") == "input"]
+    names = [n for n, v in fmu_variables(plant).items() if v.causality == "input"]
     amplitudes = {"tau_c": 8.0, "tau_1": 0.03, "tau_2": 0.03}
     # Slow ones: the FMU takes them as linear over a step.
     inputs = {n: Sine(amplitudes.get(n, 0.3), 0.05 + 0.01 * i, 0.3) for i, n in enumerate(names)}
