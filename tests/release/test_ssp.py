@@ -59,8 +59,6 @@ def test_libcosim_takes_the_parameters_and_gives_the_estimate_one_sample_later(s
             ("estimator", "StiffnessEstimator", recording.estimators["RESIDUAL"]["sigma"][k - 1]),
         ):
             with Fmu(sigmahat.fmu(name)) as fmu:
-                references = [fmu.variables["sigma"].valueReference]
-            (found,) = observer.last_real_values(
-                slave_index=slaves[element], variable_references=references
-            )
-            assert found == pytest.approx(expected, rel=1e-9)
+                sigma = fmu.variables["sigma"].valueReference
+            found = observer.last_real_values(slaves[element], [sigma])
+            assert found == pytest.approx([expected], rel=1e-9)
