@@ -15,12 +15,11 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
-from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
-import sigmahat
 from regression_joint import WITHOUT_MISFITS
 from shared_data import data_folder
+from sigmahat import Estimator
 from sigmahat.fmi.instance import Value
 
 Array = NDArray[np.float64]
@@ -72,9 +71,9 @@ class Log:
         """Deformation of the transmission [rad]."""
         return self.q - self.theta
 
-    def rms(self, fit: "Fit") -> float:
+    def rms(self, fit: Estimator) -> float:
         """RMS error of the fitted torque in percent of the torque range."""
-        error = fit.at(self.setting)(self.phi) - self.torque
+        error = fit.evaluate(self.phi, self.setting)["tau_e"] - self.torque
         return float(100 * np.sqrt(np.mean(error**2)) / np.ptp(self.torque))
 
     def hysteresis(self) -> float:
@@ -104,23 +103,6 @@ class Log:
         return (both + 0.5) * BIN, np.mean(branches, axis=0)
 
 
-@dataclass(frozen=True)
-class Fit:
-    """What the estimator has estimated at the end of a replay."""
-
-    symmetric: bool
-    eta: Array  # coefficients [size: N x M]
-    tau_e: float  # at the last sample [N.m]
-    sigma: float  # at the last sample [N.m/rad]
-
-    def at(self, setting: float) -> Polynomial:
-        """Torque [N.m] over the deformation [rad]; its derivative is the stiffness."""
-        coefficients = np.zeros(2 * N)
-        powers = slice(1, None, 2) if self.symmetric else slice(N)
-        coefficients[powers] = self.eta @ float(setting) ** np.arange(M)
-        return Polynomial(coefficients)
-
-
 def slope(x: Array, y: Array, at: float, half_width: float) -> float:
     """Slope of the straight line through the points of y(x) within half_width of x = at."""
     near = np.abs(x - at) < half_width
@@ -136,48 +118,32 @@ def logs(path: Path) -> list[Log]:
     return found
 
 
-def play(
-    played: Sequence[Log], symmetric: bool, method: Mapping[str, Value], record: Sequence[str] = ()
-) -> tuple[sigmahat.Estimator, dict[str, Array]]:
-    """An estimator after logs, one after another, and what it recorded [size: samples]."""
-    start = {**PARAMETERS, **method, "rls.symmetric": symmetric}
-    estimator = sigmahat.Estimator(start, record)
-    columns = estimator.run(
-        theta=np.concatenate([log.theta for log in played]),
-        q=np.concatenate([log.q for log in played]),
-        theta_c=np.concatenate([np.full(len(log.q), float(log.setting)) for log in played]),
-        tau_e_sensor=np.concatenate([log.torque for log in played]),
-    )
-    return estimator, {name: columns[name] for name in record}
+def inputs(played: Sequence[Log]) -> dict[str, Array]:
+    """Logs, one after another, as the estimator takes them."""
+    return {
+        "theta": np.concatenate([log.theta for log in played]),
+        "q": np.concatenate([log.q for log in played]),
+        "theta_c": np.concatenate([np.full(len(log.q), float(log.setting)) for log in played]),
+        "tau_e_sensor": np.concatenate([log.torque for log in played]),
+    }
 
 
-def replay(played: Sequence[Log], symmetric: bool, method: Mapping[str, Value] = PAPER2011) -> Fit:
-    """Replays logs, one after another, through a new estimator."""
-    estimator, _ = play(played, symmetric, method)
-    tau_e, sigma = (float(estimator.output(name)) for name in ("tau_e", "sigma"))
-    return Fit(symmetric, estimator.eta, tau_e, sigma)
+def replay(
+    played: Sequence[Log], symmetric: bool, method: Mapping[str, Value] = PAPER2011
+) -> Estimator:
+    """An estimator after logs, one after another."""
+    estimator = Estimator({**PARAMETERS, **method, "rls.symmetric": symmetric})
+    estimator.run(**inputs(played))
+    return estimator
 
 
-def errors(measured: Sequence[Log], method: Mapping[str, Value]) -> list[float]:
-    """RMS error of the torque at each setting in percent of its range, after all logs, with all
-    that makes up the curve: coefficients eta, dead zones and knees."""
-    estimator, _ = play(measured, False, method)
-    torques = [estimator.evaluate(log.phi, float(log.setting))["tau_e"] for log in measured]
-    return [
-        float(100 * np.sqrt(np.mean((torque - log.torque) ** 2)) / np.ptp(log.torque))
-        for torque, log in zip(torques, measured, strict=True)
-    ]
-
-
-def coverage(measured: Sequence[Log], method: Mapping[str, Value]) -> float:
+def coverage(measured: Sequence[Log], fit: Estimator) -> float:
     """Share of the points every 0.01 rad at which the slope of the mean curve, within 0.02 rad, is
     within 1.96 sigma_std of the estimate, when the logs are replayed a second time [%]."""
-    names = ("sigma", "sigma_std", "phi")
-    _, columns = play([*measured, *measured], False, method, names)
-    found = {name: columns[name][len(columns[name]) // 2 :] for name in names}
+    found = fit.run(**inputs(measured))
     inside, first = [], 0
     for log in measured:
-        part = {name: c[first : first + len(log.q)] for name, c in found.items()}
+        part = {name: c[first : first + len(log.q)] for name, c in found.values.items()}
         first += len(log.q)
         x, y = log.mean_curve()
         for phi in np.arange(x[0] + 0.02, x[-1] - 0.02, 0.01):
@@ -195,7 +161,7 @@ def leave_one_out(measured: Sequence[Log]) -> dict[int, float]:
     }
 
 
-def worst(measured: Sequence[Log], fit: Fit, half_width: float, line: bool = False) -> float:
+def worst(measured: Sequence[Log], fit: Estimator, half_width: float, line: bool = False) -> float:
     """Largest error [%] of the stiffness at +-0.1 rad against the slope of the measured curve.
 
     line  compares the slope of a line through the fitted torque over the same window instead
@@ -204,15 +170,15 @@ def worst(measured: Sequence[Log], fit: Fit, half_width: float, line: bool = Fal
     for log in measured:
         x, y = log.mean_curve()
         for phi in POINTS:
-            sigma = float(fit.at(log.setting).deriv()(phi))
+            sigma = float(fit.evaluate(phi, log.setting)["sigma"])
             if line:
-                sigma = slope(x, fit.at(log.setting)(x), phi, half_width)
+                sigma = slope(x, fit.evaluate(x, log.setting)["tau_e"], phi, half_width)
             errors.append(abs(100 * (sigma / slope(x, y, phi, half_width) - 1)))
     return max(errors)
 
 
 def torque_table(
-    measured: Sequence[Log], general: Fit, odd: Fit, left_out: Mapping[int, float]
+    measured: Sequence[Log], general: Estimator, odd: Estimator, left_out: Mapping[int, float]
 ) -> str:
     """RMS of the torque, as a table in Markdown."""
     rows = ["| setting [mm] | range [N.m] | general basis | left out | odd basis | hysteresis |"]
@@ -224,7 +190,7 @@ def torque_table(
     return "\n".join(["torque, RMS in % of its range:", *rows, ""])
 
 
-def stiffness_table(measured: Sequence[Log], general: Fit, odd: Fit) -> str:
+def stiffness_table(measured: Sequence[Log], general: Estimator, odd: Estimator) -> str:
     """Stiffness at +-0.1 rad as a table in Markdown, and its error for several windows."""
     rows = ["| setting [mm] | phi [rad] | measured | general basis | odd basis |"]
     rows.append("|---|---|---|---|---|")
@@ -233,7 +199,7 @@ def stiffness_table(measured: Sequence[Log], general: Fit, odd: Fit) -> str:
             truth = slope(*log.mean_curve(), phi, HALF_WIDTH)
             cells = [
                 f"{sigma:.0f} ({100 * (sigma / truth - 1):+.1f} %)"
-                for sigma in (fit.at(log.setting).deriv()(phi) for fit in (general, odd))
+                for sigma in (fit.evaluate(phi, log.setting)["sigma"] for fit in (general, odd))
             ]
             rows.append(f"| {log.setting} | {phi:+.1f} | {truth:.0f} | {' | '.join(cells)} |")
     for width in (0.02, 0.04, HALF_WIDTH, 0.055, 0.06, 0.065, 0.07):
@@ -242,7 +208,7 @@ def stiffness_table(measured: Sequence[Log], general: Fit, odd: Fit) -> str:
     return "\n".join(["stiffness in N.m/rad:", *rows])
 
 
-def draw(measured: Sequence[Log], general: Fit, odd: Fit) -> Figure:
+def draw(measured: Sequence[Log], general: Estimator, odd: Estimator) -> Figure:
     """Torque over deformation, measured and fitted, a panel for each setting."""
     figure = Figure(figsize=(9.0, 6.0), layout="constrained")
     panels = figure.subplots(2, 3, sharex=True)
@@ -258,7 +224,9 @@ def draw(measured: Sequence[Log], general: Fit, odd: Fit) -> Figure:
             (general, "#0072B2", "-", "general basis, RMS"),
         ):
             label = f"{name}: {log.rms(fit):.1f} %"
-            axes.plot(x, fit.at(log.setting)(x), color=color, linestyle=line, label=label)
+            axes.plot(
+                x, fit.evaluate(x, log.setting)["tau_e"], color=color, linestyle=line, label=label
+            )
         axes.set_title(f"support at {log.setting} mm", fontsize=10)
         axes.grid(color="#dddddd", linewidth=0.6)
         axes.legend(fontsize=7.5, loc="upper left")
