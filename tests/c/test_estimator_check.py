@@ -1,5 +1,6 @@
 """The check of a state that comes from elsewhere: states of runs pass, damaged ones do not."""
 
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -50,19 +51,26 @@ def test_every_state_of_a_run_passes(c: Library, method: int, joint: dict[str, A
 
 CONFIGURED = {"method": FILTERED_REGRESSION, "rls.n": 3, "prior.B": 0.1}
 SIZE = 33  # number of columns with these parameters
-INTEGERS_OF_FILTERED_REGRESSION = [
-    *("modality", "friction_drifts", "stiffness_known", "signals.begun", "data.size"),
-    *("columns.size", "columns.spring", "columns.knees", "columns.filtered"),
-    *("columns.friction", "columns.inertia", "columns.has_nominal"),
-    *("columns.column.kind", "columns.column.i"),
-    *("columns.column.j", "refit.unread", "refit.step", "refit.trial", "refit.last_trial"),
-    "refit.used",
-    *("blocks.constant.size", "blocks.drifting.size", "blocks.recent.size"),
-    *("change.changed.size", "change.following", "change.widened"),
-    *("signals.decimation", "mean.samples", "row.tick"),
-    *("posterior.information.size", "posterior.column"),
-    *("refit.posterior.information.size", "refit.posterior.column"),
-]
+LIMITS: dict[str, tuple[int, int]] = {
+    "modality": (1, 3),
+    **dict.fromkeys(("friction_drifts", "stiffness_known", "signals.begun"), (0, 1)),
+    **dict.fromkeys(("refit.used", "change.following"), (0, 1)),
+    "refit.unread": (0, SIZE),
+    "refit.step": (0, 16),
+    **dict.fromkeys(("refit.trial", "refit.last_trial"), (0, 6)),
+    **dict.fromkeys(("data.size", "change.changed.size", "columns.size"), (SIZE, SIZE)),
+    **{f"blocks.{sums}.size": (SIZE, SIZE) for sums in ("constant", "drifting", "recent")},
+    **{f"{one}.information.size": (1, SIZE) for one in ("posterior", "refit.posterior")},
+    **{f"{one}.column": (0, SIZE - 1) for one in ("posterior", "refit.posterior")},
+    "columns.has_nominal": (0, 0),
+}
+"""Of integers of a state of FilteredRegression."""
+OTHERS = (
+    *("columns.spring", "columns.knees", "columns.filtered", "columns.friction"),
+    *("columns.inertia", "columns.column.kind", "columns.column.i", "columns.column.j"),
+    *("change.widened", "signals.decimation", "mean.samples", "row.tick"),
+)
+"""Other integers of it, none of which can be below 0 or above 64."""
 
 
 def damage(part: Any, member: str, place: int, value: int) -> None:
@@ -78,36 +86,18 @@ def damage(part: Any, member: str, place: int, value: int) -> None:
         setattr(part, last, value)
 
 
-@settings(max_examples=20, deadline=None)
-@pytest.mark.parametrize("member", INTEGERS_OF_FILTERED_REGRESSION)
-@given(
-    place=st.integers(0, 5), value=st.one_of(st.integers(-(2**15), -2), st.integers(65, 2**15 - 1))
-)
-def test_a_damaged_member_is_found(c: Library, member: str, place: int, value: int) -> None:
-    """An integer of a state of FilteredRegression is out of all that it can be."""
-    e = Estimator(c, CONFIGURED)
-    damage(e.state.method.regression, member, place, value)
-    assert not passes(e)
+@pytest.mark.parametrize("member", [*LIMITS, *OTHERS])
+def test_a_damaged_member_is_found(c: Library, member: str) -> None:
+    """An integer is out of all that it can be, at any of its places."""
+    for place, value in product(range(6), (-(2**15), -2, 65, 2**15 - 1)):
+        e = Estimator(c, CONFIGURED)
+        damage(e.state.method.regression, member, place, value)
+        assert not passes(e)
 
 
-@pytest.mark.parametrize(
-    ("member", "least", "largest"),
-    [
-        ("modality", 1, 3),
-        *((flag, 0, 1) for flag in ("friction_drifts", "stiffness_known", "signals.begun")),
-        *((flag, 0, 1) for flag in ("refit.used", "change.following")),
-        ("refit.unread", 0, SIZE),
-        ("refit.step", 0, 16),
-        *((group, 0, 6) for group in ("refit.trial", "refit.last_trial")),
-        *((sums, SIZE, SIZE) for sums in ("data.size", "change.changed.size")),
-        *((f"blocks.{sums}.size", SIZE, SIZE) for sums in ("constant", "drifting", "recent")),
-        *((f"{one}.information.size", 1, SIZE) for one in ("posterior", "refit.posterior")),
-        *((f"{one}.column", 0, SIZE - 1) for one in ("posterior", "refit.posterior")),
-        ("columns.size", SIZE, SIZE),
-        ("columns.has_nominal", 0, 0),
-    ],
-)
-def test_the_limits_are_exact(c: Library, member: str, least: int, largest: int) -> None:
+@pytest.mark.parametrize("member", LIMITS)
+def test_the_limits_are_exact(c: Library, member: str) -> None:
+    least, largest = LIMITS[member]
     for value in (least - 1, least, largest, largest + 1):
         e = Estimator(c, CONFIGURED)
         damage(e.state.method.regression, member, 1, value)
