@@ -122,6 +122,18 @@ def test_modality_can_change_between_ticks(c: Library) -> None:
     assert not np.allclose(second["sigma"], alone["sigma"][300:], rtol=1e-6)
 
 
+@pytest.mark.parametrize("method", [1, 2])
+def test_a_mirrored_motion_has_mirrored_torques(c: Library, method: int) -> None:
+    """All positions but that of the other motor, and all torques, with the other sign."""
+    z = table1_recording().measurements()[:4000]
+    mirror = np.array([-1.0, -1.0, 1.0, -1.0, -1.0])
+    values = {**REGRESSION, "method": method}
+    found, mirrored = (Estimator(c, values).run(each) for each in (z, mirror * z))
+    assert np.array_equal(mirrored["sigma"], found["sigma"])
+    for name in ("tau_e", "theta_dot", "phi", "epsilon"):
+        assert np.array_equal(mirrored[name], -found[name]), name
+
+
 # Samples that are not finite
 
 
@@ -146,9 +158,9 @@ LARGEST = {**REGRESSION, "rls.n": 8, "rls.m": 5, "range.phi": 1e-6}
 def test_a_refused_sample_leaves_the_state_as_a_lost_one(
     c: Library, name: str, bad: float, values: Mapping[str, float], at: int
 ) -> None:
-    """GIVEN a sample that is not finite or whose powers overflow in the regression, before the first
-    good sample, after a gap, while the filters settle or later, WHEN it is skipped, THEN all is as
-    if it were lost, and no output but `valid` changes."""
+    """GIVEN a sample that is not finite or whose powers overflow, before the first good sample,
+    after a gap, while the filters settle or later, WHEN it is skipped, THEN all is as if it were
+    lost, and no output but `valid` changes."""
     lost = table1_recording().measurements()[:1500]
     lost[[0, 500, at]] = math.nan
     refused = lost.copy()
