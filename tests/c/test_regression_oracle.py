@@ -33,20 +33,13 @@ OTHERS = {
 POWERS, SET_POWER, KNEE, HYSTERESIS, MOTOR_ENCODER, GAP = range(1, 7)
 
 
-def compare(found: NDArray[np.void], expected: Mapping[str, Array]) -> None:
-    """Every output, to 1e-7 of its largest value; each coefficient of eta by itself."""
-    for name, want in expected.items():
-        largest = np.max(np.abs(want), axis=0)
-        error = np.max(np.abs(found[name] - want), axis=0)
-        assert np.all(error <= 1e-7 * largest), (name, np.max(error / np.maximum(largest, 1e-300)))
-
-
 def check(
-    c: Library, p: Mapping[str, float], z: Array, modality: Array | None = None
+    c: Library, p: Mapping[str, Any], z: Array, modality: Array | None = None
 ) -> tuple[Oracle, NDArray[np.void]]:
-    """Compares a run, in which the modality may change."""
+    """Compares a run, in which the modality may change: every output, to 1e-7 of its largest value;
+    each coefficient of eta by itself."""
     modalities = np.full(len(z), p["modality"]) if modality is None else modality
-    oracle = Oracle(c, p, z, None, modalities)
+    oracle = Oracle(c, p, z, modalities)
     estimator = Estimator(c, p)
     changes = [*(np.flatnonzero(np.diff(modalities)) + 1), len(z)]
     parts, first = [], 0
@@ -57,7 +50,10 @@ def check(
     found = np.concatenate(parts)
     good = np.all(np.isfinite(z), axis=1)
     assert np.array_equal(found["valid"] == 1, good)
-    compare(found[good], oracle.run())
+    for name, want in oracle.run().items():
+        largest = np.max(np.abs(want), axis=0)
+        error = np.max(np.abs(found[name][good] - want), axis=0)
+        assert np.all(error <= 1e-7 * largest), (name, np.max(error / np.maximum(largest, 1e-300)))
     regression = estimator.state.method.regression
     assert list(regression.refit.used)[1:] == oracle.used[1:]
     assert bool(regression.friction_drifts) == oracle.friction_drifts
@@ -227,7 +223,4 @@ def test_every_tick_with_a_nominal_curve(c: Library, tau_e: float) -> None:
     eta_0 = np.zeros((8, 5))
     eta_0[0][2] = 0.037  # 2 k_s 1e-6, 30 % too high
     eta_0[1][2] = -0.025
-    estimator = Estimator(c, {**p, "rls.eta_0": eta_0.tolist()})
-    expected = Oracle(c, p, z, eta_0[:2, :3], np.full(len(z), RESIDUAL)).run()
-    found = estimator.run(z)
-    compare(found, expected)
+    check(c, {**p, "rls.eta_0": eta_0.tolist()}, z)

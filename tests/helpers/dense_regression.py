@@ -215,13 +215,11 @@ def threshold(N: float) -> float:
 class Oracle:
     """The estimator; `run` gives all outputs of all ticks."""
 
-    def __init__(
-        self, c: Library, p: Parameters, z: Array, eta_0: Array | None, modality: Array
-    ) -> None:
-        self.c, self.p, self.z, self.eta_0, self.modality = c, p, z, eta_0, modality
+    def __init__(self, c: Library, p: Parameters, z: Array, modality: Array) -> None:
+        self.c, self.p, self.z, self.modality = c, p, z, modality
         self.T, self.w, self.K = p["samplePeriod"], bandwidth(p), decimation(p)
         self.runs = self.find_runs(np.all(np.isfinite(z), axis=1))
-        self.inputs = Inputs(p, np.nan_to_num(z, posinf=0.0, neginf=0.0), self.runs, eta_0)
+        self.inputs = Inputs(p, np.nan_to_num(z, posinf=0.0, neginf=0.0), self.runs)
         self.columns = self.inputs.columns
         self.n = n = len(self.columns)
         self.kinds = [kind for kind, _, _ in self.columns]
@@ -814,11 +812,8 @@ class Oracle:
 
     def curve(self) -> Array:
         """Coefficients of setPoint^j phi^e [size: 8 x 5]."""
-        n, eta = self.p["rls.n"], np.zeros((8, 5))
-        if self.eta_0 is not None:
-            eta[: self.eta_0.shape[0], : self.eta_0.shape[1]] = (
-                1 + self.of["NOMINAL"]
-            ) * self.eta_0
+        n = self.p["rls.n"]
+        eta = (1 + self.of["NOMINAL"]) * np.array(self.p.get("rls.eta_0", np.zeros((8, 5))))
         for i, (kind, index, prior) in enumerate(self.columns):
             places = {
                 "POWER": (index % n, index // n),

@@ -72,7 +72,7 @@ def direction(c: Library, theta: Array, count: float, slow: float) -> tuple[Arra
 Column = tuple[str, int, float]  # kind, number in its kind, prior
 
 
-def columns(p: Parameters, nominal: bool) -> list[Column]:
+def columns(p: Parameters) -> list[Column]:
     """The columns in their order. Those with a prior of 0 are left out."""
     tau_e, n, m = p["prior.tau_e"], p["rls.n"], p["rls.m"]
     K_0 = tau_e / p["range.phi"]
@@ -82,7 +82,7 @@ def columns(p: Parameters, nominal: bool) -> list[Column]:
         return float(p[f"prior.{name}"])
 
     found: list[Column] = [("POWER", i, tau_e) for i in range(n * m)]
-    found += [("NOMINAL", 0, of("nominal") if nominal else 0.0)]
+    found += [("NOMINAL", 0, of("nominal") if "rls.eta_0" in p else 0.0)]
     found += [("HIGHER_POWER", i, of("power") * tau_e) for i in range(2) if n + i < most_n]
     linear = 0 if p["rls.symmetric"] else 1
     if 1 < m < most_m and linear < n:
@@ -138,21 +138,21 @@ def plays(phi: Array, runs: list[slice], range_phi: float) -> Array:
 class Inputs:
     """Signals of the columns before the filters, and their slopes over phi [size: ticks x n]."""
 
-    def __init__(self, p: Parameters, z: Array, runs: list[slice], eta_0: Array | None) -> None:
+    def __init__(self, p: Parameters, z: Array, runs: list[slice]) -> None:
         theta, q, theta_c = z[:, 0], z[:, 1], z[:, 2]
         self.p, self.theta, self.q, self.phi = p, theta, q, q - theta
         self.x = self.phi / p["range.phi"]
         self.set_point = 100 - 2.5 / (2 * math.pi) * theta_c
         self.l = (self.set_point - p["range.setPoint_center"]) / p["range.setPoint"]
         self.plays = plays(self.phi, runs, p["range.phi"])
-        self.columns = columns(p, eta_0 is not None)
+        self.columns = columns(p)
         zero = np.zeros(len(z))
         self.nominal, self.nominal_slope = zero, zero
-        if eta_0 is not None:  # coefficients of setPoint^j phi^e [size: n x m]
-            for (i, j), value in np.ndenumerate(eta_0):
-                e, factor = self.exponent(i), value * self.set_point**j
-                self.nominal = self.nominal + factor * self.phi**e
-                self.nominal_slope = self.nominal_slope + factor * e * self.phi ** max(e - 1, 0)
+        # Coefficients of setPoint^j phi^e.
+        for (i, j), value in np.ndenumerate(p.get("rls.eta_0", [])):
+            e, factor = self.exponent(i), value * self.set_point**j
+            self.nominal = self.nominal + factor * self.phi**e
+            self.nominal_slope = self.nominal_slope + factor * e * self.phi ** max(e - 1, 0)
         pairs = [self.signal(kind, index) for kind, index, _ in self.columns]
         priors = np.array([prior for _, _, prior in self.columns])
         self.F = np.array([f for f, _ in pairs]).T * priors

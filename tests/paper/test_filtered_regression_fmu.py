@@ -97,7 +97,7 @@ def bound(c: Library, p: dict[str, float], run: dict[str, Array], at: NDArray[np
     """Least standard deviation of the stiffness at samples `at`, after all data [N.m/rad]."""
     z = np.column_stack([run[name] for name in TRUE[:5]])
     everything = slice(0, len(z))
-    inputs = Inputs(p, z, [everything], None)
+    inputs = Inputs(p, z, [everything])
     filtered = Filtered(c, p, inputs, z, everything, False)
     kinds = [kind for kind, _, _ in inputs.columns]
     load = -p["prior.load_friction"] * np.abs(run["tau_e"]) * filtered.sign
