@@ -9,18 +9,18 @@ import pytest
 from scipy import signal
 
 from c_library import Estimator, Library
-from c_regression import coefficients, covariance
+from c_regression import covariance, kinds
 from regression_joint import PLAIN, SETTINGS, STIFFNESS, Joint, MisfitJoint, T, at_rest
 
 HYSTERESIS, GAP = 4, 6
 
 
-def accuracy(estimator: Estimator, *kinds: str) -> float:
+def accuracy(estimator: Estimator, *of: str) -> float:
     """Standard deviation of the sum of the coefficients of some kinds, in their own unit."""
     regression = estimator.state.method.regression
-    names = coefficients(estimator)
+    names = kinds(estimator)
     own = list(regression.posterior.column[0 : regression.posterior.information.size])
-    chosen = np.array([regression.columns.column[i].prior * (names[i][0] in kinds) for i in own])
+    chosen = np.array([regression.columns.column[i].prior * (names[i] in of) for i in own])
     return float(np.sqrt(chosen @ covariance(estimator) @ chosen))
 
 
@@ -41,12 +41,12 @@ def test_each_misfit_is_estimated(c: Library, output: str, way: int, gamma: floa
     right sign whatever the gear; and the stiffness is right."""
     if output == "hysteresis_hat":
         way = 1  # no hysteresis gives energy
-    misfit, kinds = OUTPUTS[output]
+    misfit, columns = OUTPUTS[output]
     ((name, size),) = misfit.items()
     joint = replace(MisfitJoint(gamma=gamma), **{name: way * size})
     estimator = Estimator(c, {**SETTINGS, "motor.gamma": gamma})
     found = estimator.run(joint.measurements())
-    std = accuracy(estimator, *kinds)
+    std = accuracy(estimator, *columns)
     assert std < 0.3 * size
     assert found[output][-1] == pytest.approx(way * size, abs=3 * std + 0.03 * size)
     assert found["sigma"][-1] == pytest.approx(STIFFNESS, rel=0.01)
@@ -113,10 +113,10 @@ def test_a_prior_of_zero_removes_its_columns_and_no_other(c: Library, prior: str
         "prior.nominal": 0.2,
         "rls.eta_0": [[1.0] + [0.0] * 4] * 8,
     }
-    of_all = coefficients(Estimator(c, values))
-    without = coefficients(Estimator(c, {**values, prior: 0.0}))
-    assert without == [name for name in of_all if name[0] not in COLUMNS_OF[prior]]
-    assert {kind for kind, _ in of_all} - {kind for kind, _ in without} == set(COLUMNS_OF[prior])
+    of_all = kinds(Estimator(c, values))
+    without = kinds(Estimator(c, {**values, prior: 0.0}))
+    assert without == [kind for kind in of_all if kind not in COLUMNS_OF[prior]]
+    assert set(of_all) - set(without) == set(COLUMNS_OF[prior])
 
 
 @pytest.mark.parametrize("prior", [name for name in PLAIN if name != "prior.torque_gain"])

@@ -34,20 +34,12 @@ def covariance(estimator: Estimator) -> Array:
     return np.asarray(np.linalg.inv(matrix), dtype=np.float64)
 
 
-def coefficients(estimator: Estimator) -> list[tuple[str, int]]:
-    """Kind and number of each column, as in the oracle: 'POWER', 0."""
+def kinds(estimator: Estimator) -> list[str]:
+    """Kind of each column, as in the oracle: 'POWER'."""
     names = {
         getattr(estimator.library.lib, name): name.removeprefix("SH_COLUMN_")
         for name in dir(estimator.library.lib)
         if name.startswith("SH_COLUMN_")
     }
-    columns, n = estimator.state.method.regression.columns, estimator.parameters.rls.n
-    return [
-        (names[c.kind], numbered(names[c.kind], c, n)) for c in columns.column[0 : columns.size]
-    ]
-
-
-def numbered(kind: str, column: Any, n: int) -> int:
-    """Number of a column among those of its kind."""
-    number = {"POWER": column.j * n + column.i, "HIGHER_POWER": column.i - n, "DAMPING": column.j}
-    return int(number.get(kind, column.i if kind in ("DEAD_ZONE", "HYSTERESIS") else 0))
+    columns = estimator.state.method.regression.columns
+    return [names[column.kind] for column in columns.column[0 : columns.size]]
