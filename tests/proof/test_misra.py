@@ -86,8 +86,9 @@ def findings(folder: Path, build: Path) -> Findings:
         for name in names:
             shutil.copytree(REPOSITORY / name, tree / name)
             for source in sorted((REPOSITORY / name).rglob("*.c")):
-                group = groups.setdefault(c_sources.generated(source, build), [])
-                group.append(str(source.relative_to(REPOSITORY)))
+                own = build / "fmu" / source.stem
+                generated = own if own.is_dir() else build / "fmu" / "AwasPlant"
+                groups.setdefault(generated, []).append(str(source.relative_to(REPOSITORY)))
         headers = [each.relative_to(REPOSITORY) for each in HEADERS]
         for generated, sources in groups.items():  # writes FILE.dump beside each source
             command = [need("cppcheck"), "--dump", "--quiet", "--std=c99"]
