@@ -11,9 +11,9 @@ from pathlib import Path
 import fmpy
 import pytest
 
+from c_sources import REPOSITORY
 from eva import analyse, library_source, with_fault
 
-REPOSITORY = Path(__file__).resolve().parents[2]
 PROOF = REPOSITORY / "tests" / "proof"
 SOURCES = REPOSITORY / "fmu_src"
 SHELL = SOURCES / "shell"
