@@ -1,6 +1,7 @@
 """Runs of a plant FMU under given torques."""
 
 from collections.abc import Iterable, Mapping, Sequence
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,16 +52,7 @@ def run_plant(
     return recorder.columns()
 
 
-def run_awas(
-    h: float,
-    torques: Array,
-    start: Mapping[str, float] | None = None,
-    record: Iterable[str] = STATES,
-    *,
-    held: bool = False,
-) -> dict[str, Array]:
-    """AwasPlant as in `run_plant`, torques in the order of INPUTS."""
-    return run_plant("AwasPlant", INPUTS, h, torques, start, record, held=held)
+run_awas = partial(run_plant, "AwasPlant", INPUTS)
 
 
 def times(h: float, duration: float) -> Array:

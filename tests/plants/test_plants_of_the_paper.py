@@ -35,7 +35,8 @@ def test_table1_is_the_solution_of_the_equations() -> None:
         awas({}), lambda t: (share * paper_tau(t), share * paper_tau_c(t), 0.0), AT_REST, 15.0
     )
     t = times(h, 15.0)
-    run = run_awas(h, sinusoids(t, (0.3, 0.1), (8.0, 0.1), (0.0, 0.0)))
+    torques = sinusoids(t, (0.3, 0.1), (8.0, 0.1), (0.0, 0.0))
+    run = run_awas(h, torques, record=STATES)
     assert relative_error(run, states(t).T).max() < 1e-7
 
 
@@ -44,7 +45,7 @@ def test_friction_gravity_and_external_torque_enter_as_in_the_equations() -> Non
     start = {"link.mgl": 1.0, "link.tau_coulomb": 0.05, "motor.tau_coulomb": 0.02}
     torques = sinusoids(times(h, 0.4), (0.3, 2.0), (8.0, 3.0), (5.0, 1.1))
     reference = solve(awas(start), h, torques, AT_REST)
-    assert relative_error(run_awas(h, torques, start), reference).max() < 1e-7
+    assert relative_error(run_awas(h, torques, start, STATES), reference).max() < 1e-7
 
 
 def test_held_torques_are_held() -> None:
