@@ -24,8 +24,6 @@ MEMORY = {"double": 149 * 1024, "float": 75 * 1024}
 STACK = {"double": 5 * 1024, "float": 2.5 * 1024}
 """Largest permitted depth of the stack [bytes]."""
 
-each_target = pytest.mark.parametrize("target", TARGETS.values(), ids=TARGETS)
-each_cortex = pytest.mark.parametrize("name", ["Cortex-M4F", "Cortex-M7"])
 each_real = pytest.mark.parametrize("real", ["double", "float"])
 
 
@@ -40,7 +38,7 @@ def cost(tree: Path) -> str:
     return run("cmake", "--build", str(tree), "--target", "cost")
 
 
-@each_target
+@pytest.mark.parametrize("target", TARGETS.values(), ids=TARGETS)
 @each_real
 @pytest.mark.parametrize("configuration", PAPER + REGRESSION)
 def test_a_processor_computes_what_the_host_computes(
@@ -97,7 +95,7 @@ def test_the_example_estimates_its_stiffness_at_1_khz(name: str, real: str, fold
 
 
 @pytest.mark.slow("a Cortex-M4F computes double in software")
-@each_cortex
+@pytest.mark.parametrize("name", ["Cortex-M4F", "Cortex-M7"])
 @each_real
 def test_memory_and_stack_are_within_their_limits(name: str, real: str, folder: Path) -> None:
     text = cost(cross_build("examples/controller", TARGETS[name], real, folder))

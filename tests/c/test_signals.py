@@ -19,11 +19,6 @@ SLOW = 0.05  # [rad/s]
 # The direction of motion
 
 
-def steps(count: int) -> Array:
-    """The numbers 0, 1, 2, ... as doubles."""
-    return np.arange(count, dtype=np.float64)
-
-
 def run(
     c: Library, positions: Array, count: float = COUNT, slow: float = SLOW * T
 ) -> tuple[Array, Array]:
@@ -34,14 +29,14 @@ def run(
 
 @pytest.mark.parametrize("velocity", [0.06, 0.3, -2.0, 40.0])
 def test_the_sign_of_steady_motion_is_known_between_counts(c: Library, velocity: float) -> None:
-    signs, unknown = run(c, round_to_counts(velocity * T * steps(400), COUNTS))
+    signs, unknown = run(c, round_to_counts(velocity * T * np.arange(400.0), COUNTS))
     assert np.all(signs[20:] == np.sign(velocity))
     assert np.all(unknown[20:] == 0)
 
 
 def test_the_sign_is_unknown_at_rest(c: Library) -> None:
     """When there has been no count for as long as one takes at the velocity `slow`."""
-    x = 0.5 * T * np.minimum(steps(200), 100)
+    x = 0.5 * T * np.minimum(np.arange(200.0), 100)
     signs, unknown = run(c, round_to_counts(x, COUNTS))
     waiting = int(np.ceil(COUNT / (SLOW * T))) + 2
     assert np.all(unknown[100 + waiting :] == 1)
@@ -49,7 +44,7 @@ def test_the_sign_is_unknown_at_rest(c: Library) -> None:
 
 
 def test_the_sign_is_unknown_while_the_motor_creeps(c: Library) -> None:
-    _, unknown = run(c, round_to_counts(0.02 * T * steps(500), COUNTS))
+    _, unknown = run(c, round_to_counts(0.02 * T * np.arange(500.0), COUNTS))
     assert np.all(unknown == 1)
 
 
@@ -60,7 +55,7 @@ def test_the_sum_of_the_signs_over_a_reversal_is_right(
 ) -> None:
     """It differs from the sum of the true signs by less than one sample."""
     turn = 0.1 + np.random.default_rng(seed).uniform(0, T)
-    t = T * steps(201)
+    t = T * np.arange(201.0)
     offset = np.random.default_rng(seed + 100).uniform(0, COUNT)
     signs, _ = run(c, round_to_counts(acceleration / 2 * (t - turn) ** 2 + offset, COUNTS))
     true = 2 * np.clip((t[1:] - turn) / T, 0, 1) - 1
@@ -70,7 +65,7 @@ def test_the_sum_of_the_signs_over_a_reversal_is_right(
 @pytest.mark.parametrize("way", [1.0, -1.0])
 def test_without_rounding_the_time_of_a_reversal_is_exact(c: Library, way: float) -> None:
     turn = 0.0503
-    t = T * steps(101)
+    t = T * np.arange(101.0)
     signs, _ = run(c, way * 50.0 * (t - turn) ** 2, count=0.0)
     true = way * (2 * np.clip((t[1:] - turn) / T, 0, 1) - 1)
     assert abs(np.sum(signs[1:] - true[1:])) < 1e-6

@@ -4,6 +4,7 @@ If a compiler or a checker is missing, the test is skipped. In the gate, which s
 it fails.
 """
 
+import shutil
 import subprocess
 import tempfile
 from functools import cache
@@ -13,7 +14,7 @@ import fmpy
 
 from c_sources import FOLDERS, REPOSITORY, SOURCES
 from fmi_runs import ESTIMATORS
-from gate import is_installed, missing
+from gate import missing
 
 FMU_SOURCES = REPOSITORY / "fmu_src"
 PLANT_SOURCES = ("plant.c", "radau.c", "noise.c")
@@ -82,7 +83,7 @@ def compiler_with(flags: tuple[str, ...], folder: Path) -> str:
     if any("fuzzer" in flag for flag in flags):
         text = "int LLVMFuzzerTestOneInput(void) { return 0; }\n"
     for compiler in ("clang", "gcc"):
-        if is_installed(compiler) and _works(compiler, flags, folder, text):
+        if shutil.which(compiler) and _works(compiler, flags, folder, text):
             return compiler
     missing(
         f"a compiler that builds programs with {' '.join(flags) or 'no options'}",

@@ -66,11 +66,6 @@ def need_of_environment(name: str) -> str:
     return found
 
 
-def is_installed(name: str) -> bool:
-    """Whether a program is there, for tests that can use another one instead."""
-    return shutil.which(name) is not None
-
-
 def note_program(event: str, arguments: tuple[object, ...]) -> None:
     """Notes the test if it starts a program by its name alone, past `need`; see sys.addaudithook.
 
