@@ -64,23 +64,10 @@ rls.m = 1
 class Estimated:
     """The estimate from the log of a run."""
 
-    runs: str  # one of RUNS, or "ab" for b after a
-    table: pa.Table  # what `sigmahat estimate` wrote for each sample of the last run
-
-    @property
-    def stiffness(self) -> float:
-        """At the end [N.m/rad]."""
-        return float(self.table[SIGMA][-1].as_py())
-
-    @property
-    def std(self) -> float:
-        """Its standard deviation [N.m/rad]."""
-        return float(self.table[STD][-1].as_py())
-
-    @property
-    def confident(self) -> float:
-        """Share of the samples [1]."""
-        return float(np.mean(self.table["estimate.confident"].to_numpy()))
+    table: pa.Table  # what `sigmahat estimate` wrote for each sample
+    stiffness: float  # at the end [N.m/rad]
+    std: float  # its standard deviation [N.m/rad]
+    confident: float  # share of the samples [1]
 
 
 @dataclass(frozen=True)
@@ -89,6 +76,7 @@ class Axis:
 
     number: int
     estimated: Sequence[Estimated]
+    """From run a, from run b, and from b after a."""
     validated: Sequence[dict[str, Any]]
     """What `sigmahat validate --json` says of run b with a, and of a with b."""
 
@@ -105,9 +93,9 @@ def study(number: int, data: Path, place: Path) -> Axis:
         )
         log = data / f"kr300_{run}.csv"
         _sigmahat("identify", log, "--config", config, "--quiet")
-        estimated.append(_estimate(run, log, config, place / run))
+        estimated.append(_estimate(log, config, place / run))
     second = data / "kr300_b.csv"
-    both = _estimate("ab", second, place / "a.toml", place / "ab", "--start-from", place / "a")
+    both = _estimate(second, place / "a.toml", place / "ab", "--start-from", place / "a")
     validated = [
         json.loads(
             _sigmahat(
@@ -121,9 +109,12 @@ def study(number: int, data: Path, place: Path) -> Axis:
     return Axis(number, [*estimated, both], validated)
 
 
-def _estimate(runs: str, log: Path, config: Path, out: Path, *more: object) -> Estimated:
+def _estimate(log: Path, config: Path, out: Path, *more: object) -> Estimated:
     _sigmahat("estimate", log, "--config", config, "--out", out, "--quiet", *more)
-    return Estimated(runs, read_estimate(out))
+    table = read_estimate(out)
+    stiffness, std = (float(table[name][-1].as_py()) for name in (SIGMA, STD))
+    confident = float(np.mean(table["estimate.confident"].to_numpy()))
+    return Estimated(table, stiffness, std, confident)
 
 
 def _sigmahat(*arguments: object, may_disagree: bool = False) -> str:
@@ -137,12 +128,13 @@ def draw(axes: Sequence[Axis]) -> Figure:
     """Stiffness over time, with its interval, and the authors' value."""
     figure = Figure(figsize=(9, 3.8), layout="constrained")
     for axis, panel in zip(axes, figure.subplots(1, len(axes)), strict=True):
-        for each, colour in zip(axis.estimated[:2], ("#0072B2", "#D55E00"), strict=True):
+        colours = ("#0072B2", "#D55E00")
+        for run, each, colour in zip(RUNS, axis.estimated[:2], colours, strict=True):
             sigma, std = (each.table[name].to_numpy() / 1e6 for name in (SIGMA, STD))
             t = 0.004 * np.arange(len(sigma))
-            panel.plot(t, sigma, color=colour, label=f"run {each.runs}")
+            panel.plot(t, sigma, color=colour, label=f"run {run}")
             low, high = sigma - 1.96 * std, sigma + 1.96 * std
-            band = f"run {each.runs}, 95 % interval"
+            band = f"run {run}, 95 % interval"
             panel.fill_between(t, low, high, color=colour, alpha=0.2, linewidth=0, label=band)
         authors = STIFFNESS[axis.number] / 1e6
         panel.axhline(authors, color="black", linestyle="--", label="authors of the data")
