@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
@@ -81,9 +82,8 @@ class Log:
 
         No function of the deformation, whatever its form, has a smaller error.
         """
-        _, number = np.unique(np.floor(self.phi / BIN), return_inverse=True)
-        mean = np.bincount(number, self.torque) / np.bincount(number)
-        error = self.torque - mean[number]
+        torque = pd.Series(self.torque)
+        error = torque - torque.groupby(np.floor(self.phi / BIN)).transform("mean")
         return float(100 * np.sqrt(np.mean(error**2)) / np.ptp(self.torque))
 
     def mean_curve(self) -> tuple[Array, Array]:
@@ -92,15 +92,11 @@ class Log:
         Each branch is averaged in bins of deformation; bins that only one branch reaches are left
         out. The log swings once, to its least angle, to its greatest and back.
         """
-        numbers = np.floor(self.phi / BIN).astype(int)
         rising = np.zeros(len(self.q), dtype=bool)
         rising[np.argmin(self.q) : np.argmax(self.q)] = True
-        both = np.intersect1d(numbers[rising], numbers[~rising])
-        branches = [
-            [np.mean(self.torque[branch & (numbers == number)]) for number in both]
-            for branch in (rising, ~rising)
-        ]
-        return (both + 0.5) * BIN, np.mean(branches, axis=0)
+        of_branches = pd.Series(self.torque).groupby([np.floor(self.phi / BIN), rising]).mean()
+        mean = of_branches.unstack().dropna().mean(axis=1)
+        return (mean.index.to_numpy() + 0.5) * BIN, mean.to_numpy()
 
 
 def slope(x: Array, y: Array, at: float, half_width: float) -> float:
