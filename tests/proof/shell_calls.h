@@ -6,8 +6,6 @@
 #ifndef SHELL_CALLS_H
 #define SHELL_CALLS_H
 
-#include <stdlib.h>
-
 #include "shell_invariant.h"
 #include "simulation.h"
 

@@ -1,7 +1,6 @@
 /* In place of the equations that CasADi generated for a plant: they write any values to their
  * results.
  */
-#include "__fc_builtin.h"
 #include "plant_functions.h"
 #include "shell_importer.h"
 

@@ -9,7 +9,6 @@
 
 #include <string.h>
 
-#include "__fc_builtin.h"
 #include "shell_importer.h"
 
 /* What replaces the parts of a model (shell_library.c, shell_equations.c) marks parameters and states

@@ -5,7 +5,6 @@
  * 1 only after sh_estimator_start or sh_estimator_check. Both are necessary conditions of the real
  * ones.
  */
-#include "__fc_builtin.h"
 #include "shell_importer.h"
 #include "sigmahat.h"
 

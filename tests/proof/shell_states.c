@@ -1,6 +1,4 @@
 /* The de-serialiser: any bytes of any length, then the state that they make, then a step. */
-#include <stdlib.h>
-
 #include "shell_invariant.h"
 #include "simulation.h"
 

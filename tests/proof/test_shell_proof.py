@@ -90,7 +90,7 @@ def alarms_of(
     apart = APART + (APART_IN_AN_ESTIMATOR if estimator else APART_IN_A_PLANT)
     found = analyse(
         [
-            *(PROOF / program, PROOF / "shell_importer.c", *replacements),
+            *(PROOF / program, *replacements),
             *(*sorted(shell.glob("*.c")), *version, *own, library_source("string.c")),
         ],
         "main",
