@@ -154,7 +154,9 @@
  */
 #define SH_TIME_OF_STEP ((sh_real)0.0065)
 #define SH_MOST_STEPS 4
-/* Number of blocks from which groups of columns are tried [1]. With 20, errors and misfits of the first 2 s are larger. */
+/* Number of blocks from which groups of columns are tried [1]. 360 random joints were confident and over 20 % wrong for
+ * 0.42 % of the time, with 10 for 0.54 and with 20 for 0.47 %.
+ */
 #define SH_FIRST_TRIAL ((sh_real)15)
 /* Pause before [s]: a refit then removes noise (detail 14), and judges the misfit. */
 #define SH_FIRST_PAUSE ((sh_real)0.2)

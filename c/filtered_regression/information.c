@@ -140,9 +140,9 @@ sh_real sh_information_take_rows(sh_information *a, int first, int end, sh_real 
     const int size = a->size, begin = first < size ? first : size, rows = end < size ? end : size;
     sh_real *row = a->U + row_offset(size, begin), gain[2];
     sample_left left = {1 / w, w};
-    int i;
+    int i = begin;
 
-    for (i = begin; i < rows; ++i) {
+    while (i < rows) {
         const int count = size - 1 - i + SH_RIGHT_SIDES;
 
         gain[0] = take_entry(&a->D[i], &x[i], &left);
@@ -156,10 +156,11 @@ sh_real sh_information_take_rows(sh_information *a, int first, int end, sh_real 
                 combine_two(row + 1, next, x + i + 2, count - 1, x + i, gain);
             }
             row = next + count - 1;
-            i += 1;
+            i += 2;
         } else {
             combine(row, x + i + 1, count, x[i], gain[0]);
             row += count;
+            i += 1;
         }
     }
     if (rows == size) {
