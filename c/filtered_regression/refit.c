@@ -231,7 +231,7 @@ void sh_refit_take(sh_regression_state *state)
 static sh_real pause_of(const sh_blocks *blocks)
 {
     return blocks->count < SH_FIRST_TRIAL ? SH_FIRST_PAUSE
-                                           : SH_REFIT_PAUSE * blocks->count * SH_BLOCK;
+                                          : SH_REFIT_PAUSE * blocks->count * SH_BLOCK;
 }
 
 /* What a refit does behind its rows: step 0..15. Friction drifts, and data are forgotten, before a refit that is no

@@ -193,7 +193,7 @@ def test_the_first_misfit_is_a_doubt(c: Library) -> None:
     assert np.all(found["confident"][500:])
     found = Estimator(c, values).run(contradicted)
     assert not np.any(found["confident"])
-    assert DOUBTS[found["doubt"][-1]] == "MISFIT"
+    assert found["doubt"][-1] == c.lib.SH_DOUBT_MISFIT
     assert found["sigma_std"][-1] < 0.1 * found["sigma"][-1]
 
 
