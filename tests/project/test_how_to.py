@@ -100,7 +100,7 @@ def test_the_program_of_the_page_on_fmus_runs_with_fmi_3(
     (tmp_path / "build").symlink_to(build.resolve())
     monkeypatch.chdir(tmp_path)
     (line,) = re.findall(r"`(fmu = .*?)`", (PAGES / "fmi3.md").read_text(encoding="utf-8"))
-    program = (REPOSITORY / "examples" / "fmpy_ten_lines.py").read_text(encoding="utf-8")
+    (program,) = blocks("../fmu.md", "python")
     names: dict[str, Any] = {}
     exec(program.replace('fmu = sigmahat.fmu("StiffnessEstimator")', line), names)
     assert names["fmu"].endswith("_FMI3.fmu")

@@ -48,6 +48,11 @@ def test_the_log_can_be_made_again_to_the_byte(recording: Any) -> None:
     assert recording[1].read_bytes() == (FILES / "knee.csv").read_bytes()
 
 
+def test_the_configuration_of_the_page_is_the_one_that_comes_with_the_log() -> None:
+    (shown,) = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
+    assert shown == (FILES / "knee.toml").read_text(encoding="utf-8")
+
+
 def test_init_finds_the_columns(printed: dict[str, Any]) -> None:
     for column in ("time_s", "motor_counts", "link_deg", "current_A"):
         assert f'column = "{column}"' in printed["guess"]
