@@ -28,7 +28,7 @@ static sh_parameters parameters_of(const AntagonisticStiffnessEstimator *fmu, in
     return p;
 }
 
-/* Why the sum is not confident. One side alone may be too uncertain, if the sum is not. */
+/* Why the sum is not confident. One side alone may move too little, if the sum is certain enough. */
 static int doubt_of_sum(const AntagonisticStiffnessEstimator *fmu)
 {
     int worst = SH_DOUBT_NONE, i;
@@ -38,7 +38,7 @@ static int doubt_of_sum(const AntagonisticStiffnessEstimator *fmu)
             worst = fmu->side[i].output.doubt;
         }
     }
-    if (worst != SH_DOUBT_NOT_EXCITED && worst != SH_DOUBT_MISFIT && worst != SH_DOUBT_NONE) {
+    if (worst != SH_DOUBT_NOT_EXCITED && worst != SH_DOUBT_NONE) {
         return worst;
     }
     if (fmu->sigma_std < fmu->side[0].parameters.limit.relative_std * fabs(fmu->sigma)) {

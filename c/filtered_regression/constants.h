@@ -73,14 +73,12 @@
 /* Least and largest number of rows of a block [1]: sh_blocks_start makes K steps for each. */
 #define SH_SHORTEST_BLOCK ((sh_real)4)
 #define SH_LONGEST_BLOCK ((sh_real)100000)
-/* Number of blocks below which there is no misfit, and the estimate is in doubt [1]: 0.2 s. With none, joints with a
- * misfit were confident and over 20 % wrong for 1.5 % of the first 1.5 s, and not for 0.2 %.
- */
+/* Number of blocks below which there is no misfit [1]: three may have an error by chance. */
 #define SH_FEW_BLOCKS ((sh_real)4)
 /* Number of blocks below which nothing is forgotten [1]. */
 #define SH_FIRST_BLOCKS ((sh_real)20)
-/* Misfit, squared, that is a doubt in so many blocks at the begin [1]: later all columns that may explain it have been
- * tried, and the variance factor covers the rest.
+/* Misfit, squared, that is a doubt with fewer than so many blocks [1]: with more, all columns that may explain it have
+ * been tried, and the variance factor covers the rest.
  */
 #define SH_UNEXPLAINED ((sh_real)2.25)
 #define SH_UNTRIED_BLOCKS ((sh_real)35)

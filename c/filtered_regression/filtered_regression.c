@@ -140,14 +140,14 @@ static void read_coefficients(const sh_regression_state *state, const sh_paramet
     }
 }
 
-/* Whether the first blocks have a misfit, and the columns that may explain it have not all been tried. */
+/* Whether few blocks have a misfit, so that the columns that may explain it have not all been tried. */
 static int is_unexplained(const sh_regression_state *state, const sh_parameters *p)
 {
     return p->regression.memory > 0 && state->blocks.count < SH_UNTRIED_BLOCKS &&
            state->misfit > SH_UNEXPLAINED;
 }
 
-/* Why the estimate is not confident. The misfit widens sigma_std, so it has a limit of its own at the begin only. */
+/* Why the estimate is not confident. The misfit widens sigma_std, so it has a limit of its own for few blocks only. */
 static int doubt_of(const sh_regression_state *state, const sh_parameters *p,
                     const sh_estimate *estimate)
 {
@@ -156,9 +156,6 @@ static int doubt_of(const sh_regression_state *state, const sh_parameters *p,
 
     if (!(estimate->sigma_std < p->limit.relative_std * sh_fabs(estimate->sigma))) {
         doubt = state->variance_factor > SH_CONTRADICTION ? SH_DOUBT_MISFIT : SH_DOUBT_NOT_EXCITED;
-    }
-    if (state->blocks.count < SH_FEW_BLOCKS) {
-        doubt = SH_DOUBT_NOT_EXCITED;
     }
     if (is_unexplained(state, p)) {
         doubt = SH_DOUBT_MISFIT;

@@ -192,8 +192,7 @@ static int can_forget(const sh_regression_state *state)
  *     kappa^2 = max(q, q_recent, 1 + (q - t) max(1, N / 5))  if q > t, else max(1, q, q_recent) .
  *
  * A misfit is a function of the state and repeats with the motion, so its part q - t does not average
- * out over N blocks. The first blocks are fewer than p, and q is at least their sum over N. With too few blocks, the last
- * judgement stays.
+ * out over N blocks. With few blocks, q is their sum over N; with too few, the last judgement stays.
  */
 void sh_misfit_judge(sh_regression_state *state, const sh_parameters *p)
 {
@@ -320,8 +319,8 @@ static void let_curve_drift(sh_regression_state *state, const sh_parameters *p, 
     }
 }
 
-/* Time counts as far as blocks do: nothing is forgotten at rest. With a short memory, blocks that are too few
- * to judge must become more first.
+/* Time counts as far as blocks do: nothing is forgotten at rest. With a short memory, blocks must become
+ * more first.
  */
 void sh_forget(sh_regression_state *state, const sh_parameters *p, sh_real time)
 {

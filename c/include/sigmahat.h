@@ -86,7 +86,7 @@ enum {
 enum {
     SH_DOUBT_NONE = 1,           /* it is confident */
     SH_DOUBT_NO_CLAIM,           /* the method computes no uncertainty that contains all errors */
-    SH_DOUBT_NOT_EXCITED,        /* sigma_std is too large, or the motion too short to judge it */
+    SH_DOUBT_NOT_EXCITED,        /* sigma_std is too large, as the motion was too small or short */
     SH_DOUBT_MISFIT,             /* the data contradict the model, and sigma_std is large or new */
     SH_DOUBT_OUT_OF_RANGE,       /* the deformation is beyond what the parameters are made for */
     SH_DOUBT_FRICTION,           /* D_theta_hat is far from its prior, or below 0 */

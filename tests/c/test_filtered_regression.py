@@ -52,7 +52,7 @@ NONE, FRICTION = 1, 6  # reasons of doubt
 
 
 @pytest.mark.parametrize(
-    ("late", "D_theta", "doubt"), [(0, 2e-4, NONE), (3, 2.6e-4, NONE), (8, 2e-4, FRICTION)]
+    ("late", "D_theta", "doubt"), [(0, 2e-4, NONE), (3, 2.6e-4, NONE), (10, 2e-4, FRICTION)]
 )
 def test_a_link_that_is_read_late_looks_like_friction_below_0(
     c: Library, late: int, D_theta: float, doubt: int

@@ -177,7 +177,7 @@ def test_every_tick_of_a_joint_with_a_misfit(c: Library, name: str) -> None:
         z = WIDE.measurements()
         z[:, 3] -= misfit / GAMMA
     oracle, found = check(c, {**START, **values}, z)
-    assert np.max(found["misfit"]) > 1.2
+    assert np.max(found["misfit"]) > 1.5
     assert oracle.friction_drifts == (name in DRIFTING)
     assert oracle.change.was_tested == (name in OTHER_FRICTION)
     assert group == 0 or group in oracle.once_used

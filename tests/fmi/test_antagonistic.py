@@ -3,10 +3,12 @@
 import math
 import re
 
+import numpy as np
 import pytest
 
 from fmi_instance import ERROR, OK, WARNING, Instance
 from fmi_runs import FMI2, SIGNALS, names
+from regression_joint import Joint
 
 PAIR = "AntagonisticStiffnessEstimator"
 CONFIDENT, NOT_EXCITED, MISFIT = 1, 3, 4  # items of the enumeration Doubt
@@ -30,9 +32,9 @@ def step(instances: list[Instance], k: int, bad: dict[str, float] | None = None)
 
 
 def doubt_of_sum(pair: Instance, one: Instance, two: Instance) -> float:
-    """The worse reason of the sides; that a side alone is not certain enough is none."""
+    """The worse reason of the sides; that a side alone moves too little is none."""
     worst = max(one.get("doubt"), two.get("doubt"))
-    if worst not in (CONFIDENT, NOT_EXCITED, MISFIT):
+    if worst not in (CONFIDENT, NOT_EXCITED):
         return worst
     if pair.get("sigma_std") < pair.get("limit.relative_std") * abs(pair.get("sigma")):
         return CONFIDENT
@@ -69,6 +71,21 @@ def test_bit_identical_to_two_estimators(values: dict[str, float]) -> None:
             assert pair.get("confident") == (pair.get("doubt") == CONFIDENT)
             assert pair.get("valid") == (0 if bad else 1)
         assert pair.get("sigma") != 0.0
+
+
+def test_a_new_misfit_of_a_side_is_a_doubt_of_the_sum() -> None:
+    """GIVEN two equal sides that contradict the model from the first sample on, THEN the sum is in
+    doubt as they are, although its sigma_std is small."""
+    joint = Joint(duration=1.4, deformation=0.01)
+    z = joint.measurements()
+    z[:, 3] += 0.02 * np.sin(3 * 50 * joint.motion[0])
+    with FMI2(PAIR) as pair:
+        pair.initialise({"method": 2, "rls.n": 3, "rls.m": 1})
+        for k, (theta, q, _, tau, _) in enumerate(z.tolist()):
+            pair.set_all({"theta_1": theta, "theta_2": theta, "q": q, "tau_1": tau, "tau_2": tau})
+            assert pair.step(k * 1e-3, 1e-3) == OK
+            assert k < 500 or pair.get("doubt") == MISFIT
+        assert pair.get("sigma_std") < 0.1 * pair.get("sigma")
 
 
 def test_messages_name_the_motor() -> None:

@@ -131,7 +131,7 @@ def methods(name: str) -> list[int]:
     if name.startswith(("residual.", "filter.")):
         return [1]
     if name == "regression.memory":
-        return []  # it acts on a misfit, which takes 20 blocks of 50 ms to be seen
+        return []  # it acts on a misfit, which takes four blocks of 50 ms to be seen
     return [2] if name.startswith(("regression.", "torque.", "limit.relative_std")) else [1, 2]
 
 

@@ -33,7 +33,7 @@ SPECIAL = {
     "epsilon": "tau",
     "eta": "zeros(8, 5)",
     "doubt": "if theta > 2 then Types.Doubt.OutOfRange elseif theta > 1 then Types.Doubt.Misfit"
-    " else Types.Doubt.None",
+    " elseif theta > 0.5 then Types.Doubt.NotExcited else Types.Doubt.None",
     "confident": "true",
     "valid": "theta < 10",
 }
@@ -130,8 +130,9 @@ NONE, NOT_EXCITED, MISFIT, OUT_OF_RANGE = 1, 3, 4, 5
     [
         ((0.1, 0.1), 1.0, NONE),
         ((0.1, 0.1), 100.0, NOT_EXCITED),
-        ((1.5, 0.1), 1.0, NONE),  # that one side is not certain enough is no reason
-        ((1.5, 0.1), 100.0, MISFIT),
+        ((0.7, 0.1), 1.0, NONE),  # that one side moves too little is no reason
+        ((0.7, 0.1), 100.0, NOT_EXCITED),
+        ((1.5, 0.1), 1.0, MISFIT),
         ((0.1, 2.5), 1.0, OUT_OF_RANGE),
         ((1.5, 2.5), 100.0, OUT_OF_RANGE),
     ],

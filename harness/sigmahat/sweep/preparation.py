@@ -107,7 +107,6 @@ def models(scenario: Scenario) -> dict[str, Plant | EstimatorFmu]:
     return {PLANT: scenario.plant, **scenario.estimators}
 
 
-@lru_cache
 def fmu_digest(*scenarios: str) -> str:
     """Digest of the installed FMUs of some scenarios: 32 hexadecimal digits."""
     text = hashlib.sha256()
@@ -126,7 +125,7 @@ def sweep_digest(plan: Plan) -> str:
 
 def execute(run: Run, fmus: str) -> Outcome:
     """Does a run. Raises WorkerError if the FMUs here have another digest."""
-    if fmu_digest(run.scenario) != fmus:
+    if _digest(run.scenario) != fmus:
         raise WorkerError(
             "a worker has other FMUs than this machine; install the same sigmahat on both"
         )
@@ -135,3 +134,6 @@ def execute(run: Run, fmus: str) -> Outcome:
     except (FmuError, ValueError) as error:
         return Outcome(run.number, {}, " ".join(str(error).split()))
     return Outcome(run.number, indices, None)
+
+
+_digest = lru_cache(fmu_digest)  # a worker reads the FMUs once
