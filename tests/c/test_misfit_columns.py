@@ -182,8 +182,8 @@ def test_data_that_contradict_the_model_are_a_doubt(c: Library) -> None:
 
 
 def test_the_first_misfit_is_a_doubt(c: Library) -> None:
-    """GIVEN a misfit from the first sample on, or none, THEN from 0.5 to 1.4 s only the joint without
-    a misfit is confident."""
+    """GIVEN a misfit from the first sample on, or none, THEN from 0.5 to 1.4 s only the joint
+    without a misfit is confident."""
     joint = Joint(duration=1.4, deformation=0.01)
     clean, contradicted = joint.measurements(), joint.measurements()
     contradicted[:, 3] += 0.02 * np.sin(3 * 50 * joint.motion[0])
