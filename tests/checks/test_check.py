@@ -221,6 +221,22 @@ def test_single_samples_that_were_lost_are_counted() -> None:
     assert found.measured == pytest.approx(90.0, abs=1.0)
 
 
+@pytest.mark.parametrize(("sample", "are_lost"), [(0, True), (40_000, True), (65_535, False)])
+def test_a_lost_sample_of_a_counter_differs_from_one_that_wraps(
+    sample: int, are_lost: bool
+) -> None:
+    """GIVEN a counter of 16 bits whose largest value is `sample`, and there another value, THEN
+    this sample is lost, unless it is one count more, over the wrap."""
+    counts = knee_log()["motor_counts"]
+    largest = int(np.argmax(counts))
+    wrapped = np.mod(counts - counts[largest] + sample, 65_536)
+    zero = 1500 + wrapped[0] - counts[0]
+    wrapped[largest] = 20_000 if sample == 0 else 0
+    text = RIGHT.replace("zero = 1500", f"zero = {zero}\nwrap = 65536")
+    found = wrong({**knee_log(), "motor_counts": wrapped}, text)
+    assert [each.kind for each in found] == [Kind.SPIKE] * are_lost
+
+
 def test_the_unit_of_both_positions_shows_in_the_steps_of_the_encoders() -> None:
     text = parameters(KNEE, 1e-3)
     for name in ("theta", "q"):

@@ -138,11 +138,12 @@ def test_the_polynomial_is_the_curve(case: Path) -> None:
 
 
 def test_intervals_of_the_parameters(tmp_path: Path) -> None:
-    """Of `identify` where it wrote one, else of the prior; none where a value is exact."""
+    """Of `identify` where it wrote one, else of the prior; none where a value is exact. Each
+    contains its value."""
     identified = (
         '[identified]\nB = {value = 2.3e-5, half_width = 1e-6, unit = "kg.m2"}\n'
         'D_theta = {value = "cannot tell", half_width = 1e-4, unit = "N.m.s/rad"}\n'
-        "tau_noise = 1e-3\n"
+        'tau_noise = 1e-3\ndamping = {value = 5.0, half_width = 0.1, unit = "N.m.s/rad"}\n'
     )
     text = METHOD + "prior.delay = 0\n" + identified
     parameters = sheet_of(estimated(tmp_path, text, duration=2.0))["parameters"]
@@ -152,6 +153,9 @@ def test_intervals_of_the_parameters(tmp_path: Path) -> None:
     assert kinds["tau_coulomb"] == (pytest.approx([-0.0392, 0.0392]), "prior")
     assert kinds["delay"] == (None, "exact") == kinds["gamma"]
     assert kinds["eccentric"][0][0] == 0.0
+    assert kinds["damping"] == ([parameters["damping"]["value"], 5.1], "identify")
+    intervals = [(p["value"], p["interval"]) for p in parameters.values() if p["interval"]]
+    assert all(low <= value <= high for value, (low, high) in intervals)
 
 
 # ---- into the FMU -------------------------------------------------------------------------------

@@ -1,5 +1,6 @@
 """From a log of several joints to one report, as a user goes; the joints are simulated by scipy."""
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -47,6 +48,8 @@ def test_from_the_log_to_one_report(shell: Shell) -> None:
         assert low < STIFFNESS < high
         assert high - low < 0.12 * STIFFNESS
         assert found[name]["answer"].endswith("confident")
+        sheet = json.loads(Path("sigmahat-results/leg", name, "joint.json").read_text())
+        assert sheet["parameters"]["D_theta"]["interval_from"] == "identify"
     shell.run("report sigmahat-results/leg")
     page = Path("sigmahat-results/leg/report.html").read_text(encoding="utf-8")
     assert "hip: Stiffness against deformation" in page

@@ -11,7 +11,7 @@ from sigmahat.guessing.columns import PERIODS, smallest_step
 from sigmahat.identification.noise import is_only_noise
 from sigmahat.logs.configuration import Port
 from sigmahat.logs.log import Array
-from sigmahat.logs.units import factor
+from sigmahat.logs.units import factor, unwrap
 
 _LOOKED_AT = 20_000  # about how many values are searched for the step of an encoder
 _STEPS = 20  # fewer steps between distinct values show no encoder
@@ -20,8 +20,10 @@ _FLAT = 3  # consecutive samples at an end of the range
 _OFTEN = 0.01  # fraction of all samples
 _SAME = 0.001  # relative difference of the logarithm of a ratio from the one of two units
 _LEAST = 20  # samples
-_SPIKE, _ALONE = 0.1, 5.0
-"""A spike: the least distance from the neighbours over the range, and over their own distance."""
+_SPIKE, _UNUSUAL, _ALONE = 0.1, 20.0, 5.0
+"""A spike: the distance from the neighbours over the range, or over the usual distance and the step
+of the encoder; and over the distance of the neighbours from each other."""
+_SMOOTH = 0.01  # the same over the range, where the values have no step
 _FEW = 50  # with fewer distinct values, the torque is a series of steps
 
 
@@ -79,9 +81,15 @@ def _spikes(name: str, port: Port, values: Array) -> Iterator[Finding]:
     """Single samples far from both neighbours, which agree: a bus or an encoder lost them."""
     if len(values) < _LEAST:
         return
+    step = smallest_step(values[:: max(1, len(values) // _LOOKED_AT)], _STEPS)
+    if port.wrap is not None:
+        values, _ = unwrap(values, port.wrap)
     span = float(np.diff(np.quantile(values, [0.01, 0.99]))[0])
     away = np.abs(values[1:-1] - (values[2:] + values[:-2]) / 2)
-    lost = (away > _SPIKE * span) & (away > _ALONE * np.abs(values[2:] - values[:-2]))
+    least = _SMOOTH * span if math.isinf(step) else _UNUSUAL * step
+    unusual = max(least, _UNUSUAL * float(np.quantile(away, 1 - 5 * _OFTEN)))
+    lost = away > min(_SPIKE * span, unusual)
+    lost &= away > _ALONE * np.abs(values[2:] - values[:-2])
     number, largest = int(np.count_nonzero(lost)), float(away.max())
     if 0 < number < _OFTEN * len(values):
         key, unit = f"ports.{name}.column", port.unit or "rad"

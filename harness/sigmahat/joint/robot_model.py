@@ -54,17 +54,13 @@ def _parameters(sheet: Sheet) -> dict[str, Parameter]:
 
 
 def _scaled(parameter: Parameter | None, factor: float, unit: str) -> Parameter:
-    """A parameter of the motor at the gear output; value and interval are not below 0.
-
-    The value is from the estimator, the interval may be from `identify`: an interval that does not
-    contain the value is made wider.
-    """
+    """A parameter of the motor at the gear output; value and interval are not below 0."""
     if parameter is None:
         return Parameter(0.0, unit, None, "absent")
     value, interval = max(factor * parameter.value, 0.0), None
     if parameter.interval is not None:
-        low, high = (max(factor * end, 0.0) for end in parameter.interval)
-        interval = min(low, value), max(high, value)
+        low, high = parameter.interval
+        interval = max(factor * low, 0.0), max(factor * high, 0.0)
     return Parameter(value, unit, interval, parameter.interval_from)
 
 

@@ -214,7 +214,7 @@ def read_document(path: Path) -> tomlkit.TOMLDocument:
     try:
         return toml_file.read(path)
     except OSError as error:
-        hint = "write one with `sigmahat init LOG`, or name it with --config"
+        hint = "write one with `sigmahat init LOG`, or name another file"
         raise LogError(f"{path}: {error.strerror}; {hint}") from error
     except ValueError as error:
         raise LogError(f"{path}: not TOML ({error})") from error

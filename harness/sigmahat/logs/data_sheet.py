@@ -3,7 +3,6 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 from sigmahat.files import toml_file
@@ -14,6 +13,8 @@ from sigmahat.fmi.sample_loop import present_values
 from sigmahat.joint import sheet
 from sigmahat.joint.curve import NORMAL_95, Curve
 from sigmahat.joint.stored import FmuId, Range
+from sigmahat.logs import joints
+from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.job import Replay
 
 UNITS = {
@@ -61,6 +62,7 @@ _AMPLITUDE_95 = 2.4477
 def data_sheet(replay: Replay, curve: Curve) -> sheet.Sheet:
     """The sheet of what an estimator has learned at the end of a replay, and its curve."""
     slave, every, configuration = replay.slave, replay.every, replay.configuration.path
+    identified = _identified(replay.configuration)
     last, doubt = replay.statistics.last, replay.statistics.last_doubt
     start = {**sheet.start_values(slave, every), **sheet.start_of(curve.polynomial)}
     claims = replay.method == "FilteredRegression"
@@ -84,7 +86,7 @@ def data_sheet(replay: Replay, curve: Curve) -> sheet.Sheet:
         misfit=last["misfit"],
         polynomial=curve.polynomial,
         curve=_points(curve) if claims else None,
-        parameters=_parameters(every, last, configuration),
+        parameters=_parameters(every, last, identified),
         rests_on=sheet.RestsOn(
             torque_gain=float(every["prior.torque_gain"]),
             sigma_per_gain=last["sigma_per_gain"],
@@ -115,16 +117,16 @@ def _check(fmu: Fmu, start: Mapping[str, Value]) -> sheet.Check:
 
 
 def _parameters(
-    every: Mapping[str, Value], last: Mapping[str, float], configuration: Path
+    every: Mapping[str, Value], last: Mapping[str, float], identified: Mapping[str, Range]
 ) -> dict[str, sheet.Parameter]:
     """Motor data, and other estimates of FilteredRegression.
 
-    The FMU gives no intervals. An interval is from `identify`, if known, else from the prior.
+    The FMU gives no intervals. An interval is from `identify`, if known, else from the prior. One
+    that does not contain the value of the estimator is made wider.
     """
     found = {"gamma": sheet.Parameter(float(every["motor.gamma"]), "1", None, "exact")}
     claims = every["method"] == "FilteredRegression"
     measured = claims and every["modality"] == "Residual"
-    identified = _identified(configuration)
     for name, unit in MOTOR.items():
         value = float(every[f"motor.{name}"])
         std = value * float(every[f"prior.{name}"]) if measured else 0.0
@@ -139,25 +141,27 @@ def _parameters(
         found[name] = _with_interval(last[f"{name}_hat"], unit, 0.0, std, identified.get(name))
     std, amplitude = stds["eccentric"], found["eccentric"]
     if std:  # std of sine and cosine: the amplitude is not normal, and never below 0
-        found["eccentric"] = replace(amplitude, interval=(0.0, _AMPLITUDE_95 * std))
+        most = max(_AMPLITUDE_95 * std, amplitude.value)
+        found["eccentric"] = replace(amplitude, interval=(0.0, most))
     return found
 
 
 def _with_interval(
     value: float, unit: str, mean: float, std: float, identified: Range | None
 ) -> sheet.Parameter:
-    if identified is not None:
-        return sheet.Parameter(value, unit, identified, "identify")
-    if not std:
+    if identified is None and not std:
         return sheet.Parameter(value, unit, None, "exact")
-    return sheet.Parameter(value, unit, (mean - NORMAL_95 * std, mean + NORMAL_95 * std), "prior")
+    low, high = identified or (mean - NORMAL_95 * std, mean + NORMAL_95 * std)
+    source = "prior" if identified is None else "identify"
+    return sheet.Parameter(value, unit, (min(low, value), max(high, value)), source)
 
 
-def _identified(configuration: Path) -> dict[str, Range]:
-    """Intervals that `identify` wrote into the configuration."""
-    if not configuration.is_file():
+def _identified(configuration: Configuration) -> dict[str, Range]:
+    """Intervals that `identify` wrote into the file of the configuration."""
+    if not configuration.path.is_file():
         return {}
-    rows: Any = toml_file.read(configuration).unwrap().get("identified", {})
+    document = joints.of_joint(toml_file.read(configuration.path), configuration.joint)
+    rows: Any = document.unwrap().get("identified", {})
     found = {}
     for name, row in rows.items() if isinstance(rows, dict) else ():
         keys = ("value", "half_width") if isinstance(row, dict) else ()

@@ -112,7 +112,7 @@ def _in(where: str, unit: str, target: str, usual: tuple[str, ...] = _USUAL) -> 
         return float(quantity.to(target.replace(".", "*")).magnitude)
     except pint.DimensionalityError as error:
         raise LogError(
-            f"{where}: unit {unit!r} cannot be converted to {target}{_meant(unit, usual)}"
+            f"{where}: unit {unit!r} cannot be converted to {target}{_meant('', usual)}"
         ) from error
     except Exception as error:  # any: the parser of pint raises many kinds
         raise LogError(f"{where}: unknown unit {unit!r}{_meant(unit, usual)}") from error
