@@ -64,22 +64,23 @@ def config_option(what: str) -> Callable[[_Command], _Command]:
 
 
 def out_option(what: str, default: str) -> Callable[[_Command], _Command]:
-    """Gives a command the option --out, a folder; capitals in `default` name a parameter.
+    """Gives a command the option --out, a folder; {log} in `default` is the stem of LOG.
 
     An empty name is refused: a shell passes an empty name if a variable is not set.
     """
 
     def folder(context: click.Context, _: click.Parameter, name: str | None) -> Path:
         if name is None:
-            stem = re.sub("[A-Z]+", lambda m: Path(context.params[m[0].lower()]).stem, default)
-            return Path("sigmahat-results", stem)
+            stems = {key: Path(str(value)).stem for key, value in context.params.items()}
+            return Path("sigmahat-results", default.format(**stems))
         if name == "":
             raise click.BadParameter("expected a folder, got an empty name.")
         if Path(name).is_file():
             raise click.BadParameter(f"{name} is a file; name a folder.")
         return Path(name)
 
-    text = f"{what}  [default: sigmahat-results/{default}]"
+    shown = re.sub("{(.*?)}", lambda parameter: parameter[1].upper(), default)
+    text = f"{what}  [default: sigmahat-results/{shown}]"
     return click.option("--out", callback=folder, help=text)
 
 

@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     default="127.0.0.1",
     help="Address of this computer to which others may connect; 0.0.0.0 means every address.",
 )
-@common.out_option("Folder for the recording and what was learned.", "CONFIG-live")
+@common.out_option("Folder for the recording and what was learned.", "{config}-live")
 @click.option(
     "--start-from",
     type=common.PATH,

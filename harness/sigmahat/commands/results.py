@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 @click.command()
 @common.log_argument
 @common.config_option("File from `sigmahat init`.")
-@common.out_option("Folder for table and figure.", "LOG")
+@common.out_option("Folder for table and figure.", "{log}")
 @click.option(
     "--start-from",
     type=common.PATH,
@@ -98,8 +98,10 @@ def _estimated(
     if start_from is not None and start_from.is_dir():
         start_from /= joint
     with common.progress("Replaying", 1000) as bar, output_folder(out / joint) as folder:
-        options = start_from, to == "mcap", rows(checked)
-        return job.estimate(opened, configuration, folder, bar.update, *options), checked
+        result = job.estimate(
+            opened, configuration, folder, bar.update, start_from, to == "mcap", rows(checked)
+        )
+    return result, checked
 
 
 def _import(module: str) -> None:

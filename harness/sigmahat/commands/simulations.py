@@ -19,7 +19,7 @@ def _names(_: click.Context, __: click.Parameter, begin: str) -> list[str]:
 @common.option(
     "--seeds", default=1, type=common.COUNT, help="Number of runs, each with other noise."
 )
-@common.out_option("Folder for figures and CSV files.", "SCENARIO")
+@common.out_option("Folder for figures and CSV files.", "{scenario}")
 @common.answer_options
 def reproduce(scenario: str, seeds: int, out: Path) -> None:
     """Run a scenario; print its table, draw its figures.
