@@ -21,9 +21,9 @@ _OFTEN = 0.01  # fraction of all samples
 _SAME = 0.001  # relative difference of the logarithm of a ratio from the one of two units
 _LEAST = 20  # samples
 _SPIKE, _UNUSUAL, _ALONE = 0.1, 20.0, 5.0
-"""A spike: the distance from the neighbours over the range, or over the usual distance and the step
-of the encoder; and over the distance of the neighbours from each other."""
-_SMOOTH = 0.01  # the same over the range, where the values have no step
+"""A spike: the least distance from the neighbours over the range, or over the usual distance and
+the step of the encoder; and over the distance of the neighbours from each other."""
+_SMOOTH = 0.01  # least distance over the range, in place of the step where there is none
 _FEW = 50  # with fewer distinct values, the torque is a series of steps
 
 
@@ -35,8 +35,9 @@ def columns(seen: View) -> Iterator[Finding]:
         finite = np.isfinite(values)
         values = values if finite.all() else values[finite]  # no copy: a log can be long
         if name in ("theta", "q"):
-            yield from list(_spikes(name, port, values)) or _jumps(name, port, values)
-            yield from step(seen, name, port, values)
+            of_encoder = encoder_step(values)
+            yield from list(_spikes(name, port, values, of_encoder)) or _jumps(name, port, values)
+            yield from step(seen, name, port, of_encoder)
         if name == "tau" and is_only_noise(values):
             key, size = f"ports.{name}.column", float(np.std(values))
             yield Finding(Kind.NO_TORQUE, Severity.NOTE, key, size, port.unit or "N.m")
@@ -77,11 +78,10 @@ def _jumps(name: str, port: Port, values: Array) -> Iterator[Finding]:
     yield Finding(Kind.JUMP, Severity.WRONG, key, jump, unit, None, known, about=name)
 
 
-def _spikes(name: str, port: Port, values: Array) -> Iterator[Finding]:
+def _spikes(name: str, port: Port, values: Array, step: float) -> Iterator[Finding]:
     """Single samples far from both neighbours, which agree: a bus or an encoder lost them."""
     if len(values) < _LEAST:
         return
-    step = smallest_step(values[:: max(1, len(values) // _LOOKED_AT)], _STEPS)
     if port.wrap is not None:
         values, _ = unwrap(values, port.wrap)
     span = float(np.diff(np.quantile(values, [0.01, 0.99]))[0])
@@ -96,10 +96,14 @@ def _spikes(name: str, port: Port, values: Array) -> Iterator[Finding]:
         yield Finding(Kind.SPIKE, Severity.WRONG, key, largest, unit, float(number), about=name)
 
 
-def step(seen: View, name: str, port: Port, values: Array) -> Iterator[Finding]:
+def encoder_step(values: Array) -> float:
+    """The smallest step between distinct values, in their unit; inf if they show no encoder."""
+    return smallest_step(values[:: max(1, len(values) // _LOOKED_AT)], _STEPS)
+
+
+def step(seen: View, name: str, port: Port, step: float) -> Iterator[Finding]:
     """Compares the step of the values with the step of the configured encoder."""
     given = float(seen.every[f"encoder.{name}"])
-    step = smallest_step(values[:: max(1, len(values) // _LOOKED_AT)], _STEPS)
     if not given or math.isinf(step):
         return
     angle = abs(step * factor(name, port) / port.gear_ratio)

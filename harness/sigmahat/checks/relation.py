@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from sigmahat.checks.changes import Change, changes, distance, gear_of
-from sigmahat.checks.columns import step
+from sigmahat.checks.columns import encoder_step, step
 from sigmahat.checks.findings import Finding, Kind, Severity
 from sigmahat.checks.motor import LINEAR, Fitted, fitted, gear_error
 from sigmahat.checks.view import View
@@ -175,8 +175,8 @@ def _encoder_denies(seen: View, change: Change) -> bool:
     other: dict[str, Any] = {change.key.rpartition(".")[2]: change.value}
     after = replace(port, **other)
     values = seen.log.read(port.column)
-    finite = values[np.isfinite(values)]
-    now, then = (list(step(seen, change.port, each, finite)) for each in (port, after))
+    of_encoder = encoder_step(values[np.isfinite(values)])
+    now, then = (list(step(seen, change.port, each, of_encoder)) for each in (port, after))
     return not now and bool(then)
 
 
