@@ -179,8 +179,8 @@ void sh_misfit_judge_recent(sh_regression_state *state, const sh_parameters *p)
     }
 }
 
-/* Whether there are enough blocks to forget data that contradict the model. */
-static int can_forget(const sh_regression_state *state)
+/* Whether there are so many blocks that the parameters explain a part of their squares, and that data are forgotten. */
+static int has_many_blocks(const sh_regression_state *state)
 {
     const sh_real N = state->blocks.count;
 
@@ -205,7 +205,7 @@ void sh_misfit_judge(sh_regression_state *state, const sh_parameters *p)
     }
     q = squares_of(state->friction_drifts ? &blocks->drifting : &blocks->constant, state->beta,
                    blocks->prior) /
-        (can_forget(state) ? N - parameters / 2 : N);
+        (has_many_blocks(state) ? N - parameters / 2 : N);
     t = chance(N) / N;
     state->misfit = sh_fmax(1, sh_fmax(q, blocks->recent_misfit));
     state->variance_factor = 1;
@@ -334,7 +334,7 @@ void sh_forget(sh_regression_state *state, const sh_parameters *p, sh_real time)
         sh_information_forget(&blocks->recent, factor, 1);
         blocks->recent_count *= factor;
     }
-    if (state->variance_factor > SH_CONTRADICTION && can_forget(state)) {
+    if (state->variance_factor > SH_CONTRADICTION && has_many_blocks(state)) {
         forget_data(state, p, moving);
     }
     if (p->regression.drift > 0) {

@@ -377,7 +377,7 @@ class Oracle:
         _, log_determinant = np.linalg.slogdet(A.astype(float))
         return float((right @ inverse(A) @ right - log_determinant) / 2)
 
-    def can_forget(self) -> bool:
+    def has_many_blocks(self) -> bool:
         return self.blocks.count >= 20 and len(self.live.chosen) < self.blocks.count
 
     def judge_recent(self) -> None:
@@ -394,7 +394,7 @@ class Oracle:
             return
         sums = blocks.walking if self.friction_drifts else blocks.all
         squares = sums.squares(self.beta) - blocks.prior * float(self.beta @ self.beta)
-        whole = squares / (N - len(self.live.chosen) / 2 if self.can_forget() else N)
+        whole = squares / (N - len(self.live.chosen) / 2 if self.has_many_blocks() else N)
         self.q = max(whole, self.recent_q)
         self.factor = 1.0
         if self.p["regression.memory"] > 0:
@@ -442,7 +442,7 @@ class Oracle:
         blocks.recent.fade(keep)
         blocks.recent_count *= keep
         everything = (self.data, blocks.all, blocks.walking)
-        if self.factor > 1.5 and self.can_forget():
+        if self.factor > 1.5 and self.has_many_blocks():
             N = blocks.recent_count
             has_changed = N > 20 and blocks.recent.rest < threshold(N)
             self.changes += has_changed

@@ -160,8 +160,8 @@ def _identified(configuration: Configuration) -> dict[str, Range]:
     """Intervals that `identify` wrote into the file of the configuration."""
     if not configuration.path.is_file():
         return {}
-    document = joints.of_joint(toml_file.read(configuration.path), configuration.joint)
-    rows: Any = document.unwrap().get("identified", {})
+    own = joints.section(toml_file.read(configuration.path), configuration.joint)
+    rows: Any = own["identified"].unwrap() if "identified" in own else {}
     found = {}
     for name, row in rows.items() if isinstance(rows, dict) else ():
         keys = ("value", "half_width") if isinstance(row, dict) else ()
