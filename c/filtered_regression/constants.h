@@ -53,6 +53,11 @@
 /* Std deviations by which the first samples may contradict a motor at rest [1]. */
 #define SH_AT_REST ((sh_real)5)
 
+/* Errors of phi that repeat with the position, over the once-per-turn error of the link encoder [1]: harmonics, gear.
+ * With 0.025 stiff joints under a free inertia are confident and wrong.
+ */
+#define SH_HARMONICS ((sh_real)0.04)
+
 /* ---- noise in columns, columns.c and posterior.c ----------------------------------------- */
 
 /* Variance of the squared noise over the square of its mean [1]: the noise is correlated. */

@@ -47,7 +47,7 @@ static sh_variances variances_at(const sh_regression_state *state, const sh_para
 
 /* tau_e = F' beta, (21), and sigma = dF' beta, (23), with the curve rls.eta_0. To the variances c' P c of both are
  * added (s_g d(c' beta)/dg)^2 with the gain g of the torque (point 8), (share c' beta)^2 with the share by which
- * rounding makes the stiffness too small (point 5), and what is not known beside a knee [(N.m/rad)2] (point 6). Returns
+ * errors of phi make the stiffness too small (point 5), and what is not known beside a knee [(N.m/rad)2] (point 6). Returns
  * d sigma / dg.
  */
 static sh_real evaluate_at(const sh_regression_state *state, const sh_parameters *p,
@@ -344,7 +344,7 @@ static void update_noise(sh_regression_state *state, const sh_parameters *p,
 
     state->noise.information += sh_limited(left->information * w, SH_LARGE);
     state->noise.gain += sh_limited(left->gain * w, SH_LARGE);
-    state->rounding += sh_limited(sh_noise_of_deformation(&state->signals) * w, SH_LARGE);
+    state->rounding += sh_limited(sh_noise_of_deformation(&state->signals, p) * w, SH_LARGE);
     if (!(p->prior.B > 0)) {
         return;
     }

@@ -506,7 +506,8 @@ class Oracle:
         at = k - filtered.run.start
         R, last = self.variance(filtered, filtered.unknown_f[at])
         self.R, self.before = R, row
-        self.rounding += self.gain * float(np.sum(self.counts**2)) / 12 / R
+        rounding = self.gain * float(np.sum(self.counts**2)) / 12
+        self.rounding += (rounding + (0.04 * self.p["prior.eccentric"]) ** 2) / R
         if "DRIVE" in self.kinds and not filtered.measured and row[-SIDES] != 0:
             self.remove_noise(row, self.share_of_torque(filtered.unknown_f[at]), R)
         self.has_row = True
