@@ -56,7 +56,7 @@
 /* Errors of phi that repeat with the position, over the once-per-turn error of the link encoder [1]: harmonics, gear.
  * With 0.025 stiff joints under a free inertia are confident and wrong.
  */
-#define SH_HARMONICS ((sh_real)0.04)
+#define SH_HARMONICS ((sh_real)0.035)
 
 /* ---- noise in columns, columns.c and posterior.c ----------------------------------------- */
 

@@ -507,7 +507,7 @@ class Oracle:
         R, last = self.variance(filtered, filtered.unknown_f[at])
         self.R, self.before = R, row
         rounding = self.gain * float(np.sum(self.counts**2)) / 12
-        self.rounding += (rounding + (0.04 * self.p["prior.eccentric"]) ** 2) / R
+        self.rounding += (rounding + (0.035 * self.p["prior.eccentric"]) ** 2) / R
         if "DRIVE" in self.kinds and not filtered.measured and row[-SIDES] != 0:
             self.remove_noise(row, self.share_of_torque(filtered.unknown_f[at]), R)
         self.has_row = True
