@@ -170,7 +170,7 @@ def _variants(
 ) -> tuple[Variants, Variants | None]:
     """With the form of friction of the least errors, if the plain one is significantly worse.
 
-    The torque is late in all of them if this explains the log significantly better.
+    The torque may be late in all of them: where a hand moves the link, a delay looks like friction.
 
     The second ones are with B as known, if it is.
     """
@@ -187,11 +187,8 @@ def _variants(
         ends = [] if inertia is None else [inertia.value * (1 + k * inertia.std) for k in _ENDS]
         return [fit(system), *(fit(system.known("B", B)) for B in ends)]
 
-    late = replace(form, delay=True)
-    every = {each: fits_of(each) for each in (form, late)}
-    plain, other = (late, form) if is_worse(every[form][0], every[late][0]) else (form, late)
-    del every[other]
-    every |= {each: fits_of(each) for each in _frictions(plain)}
+    plain = replace(form, delay=True)
+    every = {each: fits_of(each) for each in (plain, *_frictions(plain))}
     best = min(every, key=lambda each: np.nan_to_num(every[each][0].error, nan=np.inf))
     chosen = best if is_worse(every[plain][0], every[best][0]) else plain
     filters = [

@@ -54,6 +54,7 @@ class Signals:
     set_point: Array
     tau: Array
     tau_e: Array | None  # torque of the sensor, to identify the torque constant
+    held: bool = False  # whether a drive holds tau until the next sample
     extra: Array | None = None
     """More regressors, [size: samples x columns]. They are filtered as the torque is, and are their
     own instruments."""
@@ -61,7 +62,9 @@ class Signals:
     def __getitem__(self, kept: slice) -> Signals:
         """Some of the samples."""
         signals = {each.name: getattr(self, each.name) for each in fields(self)}
-        return replace(self, **{name: x[kept] for name, x in signals.items() if x is not None})
+        return replace(
+            self, **{name: x[kept] for name, x in signals.items() if isinstance(x, np.ndarray)}
+        )
 
 
 class Stribeck(NamedTuple):
@@ -205,6 +208,8 @@ def rows(
         part = piece[2 * first : 2 * last]
         velocity = _first(low_pass(part.theta, form.wide, T), T)
         direction = _direction(velocity, form.coulomb_velocity)
+        if part.held:  # a torque that is held is late by half a sample in the mean
+            part = replace(part, tau=(part.tau + np.append(part.tau[:1], part.tau[:-1])) / 2)
         halves = [
             _half(part[half::2], velocity[half::2], direction[half::2], 2 * T, gamma, form, units)
             for half in (0, 1)
@@ -282,6 +287,7 @@ def signals_of(
             set_point=offset + scale * part.get("theta_c", nothing),
             tau=measured if torque == "tau" else -measured / float(every["motor.gamma"]),
             tau_e=part["tau_e_sensor"] if sensor else None,
+            held=bool(every["torque.held"]) and torque == "tau",
         )
 
 
