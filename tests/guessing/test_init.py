@@ -28,21 +28,6 @@ def read(path: str = "log.toml", joint: str = "") -> Any:
     return of_joint(tomlkit.parse(Path(path).read_text()), joint).unwrap()
 
 
-def test_names_of_ports(shell: Shell) -> None:
-    units = {"theta": "rad", "q": "rad", "theta_c": "rad", "tau": "N.m"}
-    log = {"time [s]": T, **dict.fromkeys(units, MOTION), "motor_velocity": 0 * T}
-    write_log(log, Path("log.csv"))
-    shell.run("init log.csv")
-    found = read()
-    assert found["time"]["column"] == "time [s]"
-    assert found["parameters"]["samplePeriod"] == pytest.approx(2e-3)
-    for port, unit in units.items():
-        assert (found["ports"][port]["column"], found["ports"][port]["unit"]) == (port, unit)
-    assert found["ports"].keys() == units.keys()
-    for name in log:
-        assert f"#   {name}: 1000 samples" in Path("log.toml").read_text()
-
-
 def test_steps_and_turns_of_encoders(shell: Shell) -> None:
     degrees = np.mod(np.round(2000 * MOTION * 4096 / 360) * 360 / 4096, 360)
     write_log({"t": T, "theta_deg": degrees, "q": MOTION, "tau": MOTION}, Path("log.parquet"))

@@ -54,10 +54,7 @@ def _lever(t: Array | float) -> Array | float:
 
 @cache
 def joint(has_lever: bool, seconds: float = 7.0, stiffer: float = 0.0) -> Motion:
-    """A motion from rest.
-
-    stiffer  relative change of the stiffness of the series elastic joint per deformation [1/rad]
-    """
+    """A motion from rest; stiffer: change of the series elastic joint per deformation [1/rad]."""
 
     def spring(phi: Array | float, t: Array | float) -> tuple[Array | float, Array | float]:
         if has_lever:

@@ -13,7 +13,10 @@ import scipy.io
 import tomlkit
 from numpy.typing import NDArray
 
+from command_line import working_in
 from plant_runs import run_awas, sinusoids, times
+from regression_joint import Joint
+from sigmahat.cli import main
 from sigmahat.identification.quantities import Identified
 from sigmahat.identification.write import update
 from sigmahat.logs.configuration import Configuration, checked_configuration, read_document
@@ -81,15 +84,19 @@ def awas_log(
     seed: int = 1,
     plant: Mapping[str, float] = MappingProxyType({}),
 ) -> Columns:
-    """AwAS with friction and noise, tau = amplitude sin(2 pi f t): ports, t, true stiffness.
-
-    plant  other start values of it
-    """
+    """AwAS with friction and noise, tau = amplitude sin(2 pi f t), and other start values of the
+    plant: ports, t, true stiffness."""
     t = times(T, duration)
     start = {**RETRACTED, "motor.tau_coulomb": TRUE["tau_coulomb"], "noise.seed": seed, **plant}
     torques = sinusoids(t, (amplitude, f), (8.0, 0.1), (0.0, 0.0))
     run = run_awas(T, torques, start, (*COLUMNS.values(), "sigma"))
     return {"t": t, **{port: run[name] for port, name in COLUMNS.items()}, "true": run["sigma"]}
+
+
+def recorded(joint: Joint) -> Columns:
+    """The log of a joint in closed form."""
+    ports = zip(("theta", "q", "theta_c", "tau"), joint.measurements().T, strict=False)
+    return {"t": joint.t, **dict(ports)}
 
 
 def plain_log(rows: int = 2000) -> Columns:
@@ -116,6 +123,14 @@ def write_log(
             for name, values in columns.items():
                 file[name] = values
     return path
+
+
+def estimated(folder: Path, columns: Columns, configuration: str, options: str = "") -> Path:
+    """A folder with knee.parquet, its configuration, and what `sigmahat estimate` has written."""
+    with working_in(folder):
+        write_log(columns, Path("knee.parquet"), configuration)
+        assert main(["estimate", "knee.parquet", "--quiet", *options.split()]) == 0
+    return folder
 
 
 STORED = 2**-17

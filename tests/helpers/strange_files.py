@@ -40,19 +40,17 @@ def damaged_logs(draw: st.DrawFn) -> bytes:
         # Where the formats say how much follows: at the beginning and at the end.
         near = draw(st.integers(0, min(2000, len(data) - 1))) if data else 0
         place = draw(st.sampled_from([near, max(0, len(data) - 1 - near)]))
-        kind = draw(st.sampled_from(["set", "set4", "cut", "remove", "insert", "double"]))
-        if kind == "set" and data:
-            data[place] = draw(st.integers(0, 255))
-        elif kind == "set4":
-            data[place : place + 4] = draw(st.sampled_from([b"\xff\xff\xff\x7f", b"\0\0\0\x10"]))
-        elif kind == "cut":
-            del data[place + 1 :]
-        elif kind == "remove":
-            del data[place : place + draw(st.integers(1, 64))]
-        elif kind == "insert":
-            data[place:place] = draw(st.binary(max_size=64))
-        else:
-            data[place:place] = data[place : place + 4096]
+        sizes = st.sampled_from([b"\xff\xff\xff\x7f", b"\0\0\0\x10"])
+        again = st.just(bytes(data[place : place + 4096]))
+        removed, put = draw(
+            st.one_of(
+                st.tuples(st.just(1), st.binary(min_size=1, max_size=1)),
+                st.tuples(st.just(4), sizes),
+                st.tuples(st.integers(1, 64) | st.just(len(data)), st.just(b"")),
+                st.tuples(st.just(0), st.binary(max_size=64) | again),
+            )
+        )
+        data[place : place + removed] = put
     return bytes(data)
 
 

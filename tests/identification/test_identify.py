@@ -21,7 +21,7 @@ from recorded_logs import (
     awas_log,
     configured,
     in_memory,
-    read_estimate,
+    recorded,
     write,
     write_log,
 )
@@ -55,25 +55,17 @@ def path(tmp_path: Path) -> Path:
 
 @pytest.mark.slow("logs are simulated and identified")
 def test_the_motor_and_the_noise_are_found(found: Found) -> None:
-    for f in (0.3, 1.0, 3.0, 8.0):
+    for f in AMPLITUDES:
         for name, true in TRUE.items():
             quantity = found[f].quantities[name]
-            assert quantity.determined or (name, f) == ("B", 0.3)  # within 10.6 %
-            assert quantity.value == pytest.approx(true, rel=0.05)
+            is_shown = (name, f) != ("B", 0.1)  # there B moves 1 % of the torque: no number
+            assert quantity.determined is is_shown or (name, f) == ("B", 0.3)  # within 10.6 %
+            assert quantity.value == pytest.approx(true, rel=0.05) or not is_shown
     for f in (1.0, 3.0, 8.0):
         assert found[f].tau_variance == pytest.approx(1e-5, rel=0.1)
         assert found[f].theta_variance == pytest.approx((2 * np.pi / 40000) ** 2 / 12, rel=0.1)
         assert found[f].m == 3  # r^2, (28)
         assert 1e8 <= found[f].V_a <= 1e13
-
-
-def test_slow_motion_does_not_determine_the_inertia(found: Found) -> None:
-    # GIVEN 0.1 Hz, where B moves 1 % of the torque, THEN no number rather than a wrong one
-    quantities = found[0.1].quantities
-    assert not quantities["B"].determined
-    for name, true in TRUE.items():
-        quantity = quantities[name]
-        assert not quantity.determined or quantity.value == pytest.approx(true, rel=0.05)
 
 
 @pytest.mark.slow("eight logs of 8 s, each simulated and identified")
@@ -237,26 +229,6 @@ def test_a_motor_that_is_off_shows_nothing_of_itself() -> None:
     assert with_torque.torque > 0 and len(with_torque.notes) == len(found.notes) - 1
 
 
-@pytest.mark.parametrize("f", [1.0, 8.0])
-def test_filtered_regression_with_what_was_identified(f: float, shell: Shell) -> None:
-    # GIVEN motor data wrong by 20 %, and friction that is in no configuration
-    log = awas_log(f, AMPLITUDES[f])
-    write_log(log, Path("log.parquet"), CONFIGURATION + 'method = "FilteredRegression"\n')
-    shell.run("identify log.parquet")
-    summary = shell.json("estimate log.parquet --out out")
-    later = slice(len(log["t"]) // 2, None)
-    table = read_estimate(Path("out"))
-    true = log["true"][later]
-    error = np.abs(table["estimate.sigma [N.m/rad]"].to_numpy()[later] - true)
-    std = table["estimate.sigma_std [N.m/rad]"].to_numpy()[later]
-    # THEN the stiffness, its standard deviation and the motor data are right
-    assert np.max(error / true) <= 0.05
-    assert np.mean(error <= 1.96 * std) >= 0.8
-    assert summary["confident"] == np.mean(table["estimate.confident"].to_numpy()[later])
-    assert summary["motor"]["D_theta_hat"] == pytest.approx(TRUE["D_theta"], rel=0.02)
-    assert summary["motor"]["tau_coulomb_hat"] == pytest.approx(TRUE["tau_coulomb"], rel=0.05)
-
-
 def test_torque_constant(shell: Shell) -> None:
     # GIVEN a current, a torque constant wrong by 20 %, and a sensor
     log = awas_log(1.0, 0.3)
@@ -269,16 +241,6 @@ def test_torque_constant(shell: Shell) -> None:
     assert document["ports"]["tau"]["torque_constant"] == pytest.approx(0.05, rel=0.05)
     assert document["parameters"]["motor"]["B"] == pytest.approx(TRUE["B"], rel=0.05)
     assert document["parameters"]["motor"]["D_theta"] == pytest.approx(TRUE["D_theta"], rel=0.05)
-
-
-def test_gaps_do_not_disturb() -> None:
-    log = awas_log(3.0, 0.3)
-    kept = np.ones(len(log["t"]), dtype=bool)
-    kept[[*range(3000, 3100), 7000, 7001]] = False
-    cut = {name: column[kept] for name, column in log.items()}
-    quantities = identified(cut).quantities
-    for name, true in TRUE.items():
-        assert quantities[name].value == pytest.approx(true, rel=0.05)
 
 
 def test_without_noise_and_rounding_the_equations_hold() -> None:
@@ -364,8 +326,7 @@ def test_a_stiffness_that_changes_in_the_log_does_not_look_like_inertia(factor: 
         return steady * np.where(t < 12.0, 1.0, factor)
 
     joint = Joint(duration=24.0, stiffness=stiffness)
-    log = dict(zip(("theta", "q", "theta_c", "tau"), joint.measurements().T, strict=False))
-    found = identified({"t": joint.t, **log}, configured("motor.gamma = 50"))
+    found = identified(recorded(joint), configured("motor.gamma = 50"))
     assert found.quantities["B"].value == pytest.approx(TRUE["B"], rel=0.03)
     times = re.findall(r"the stiffness changes after (\S+) s", "".join(found.notes))
     assert [float(t) for t in times] == ([] if factor == 1 else [pytest.approx(12.0, abs=0.3)])

@@ -3,7 +3,6 @@
 import csv
 import json
 import re
-from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -20,6 +19,7 @@ from recorded_logs import (
     awas_log,
     configured,
     in_memory,
+    recorded,
     write_log,
 )
 from regression_joint import STIFFNESS, HardeningJoint, MisfitJoint, hardening
@@ -61,11 +61,10 @@ def estimated(columns: Columns, configuration: str, folder: Path) -> Estimate:
         return estimate(log, read_configuration(folder / "log.toml"), folder)
 
 
-def recorded(joint: MisfitJoint, gain: float = 1.0) -> Columns:
+def good_log(joint: MisfitJoint, gain: float = 1.0) -> Columns:
     """A log with good sensors, but for the gain of the torque."""
-    joint = replace(joint, counts=1 << 18, noise=1e-3)
-    log = dict(zip(("theta", "q", "theta_c", "tau"), joint.measurements().T, strict=False))
-    return {"t": joint.t, **log, "tau": gain * log["tau"]}
+    log = recorded(replace(joint, counts=1 << 18, noise=1e-3))
+    return {**log, "tau": gain * log["tau"]}
 
 
 @pytest.mark.slow("twenty logs are estimated")
@@ -76,7 +75,7 @@ def test_the_bands_hold_the_truth_as_often_as_they_say() -> None:
     inside: dict[str, list[float]] = {"tau_e": [], "sigma": []}
     scores = []
     for seed, gain in enumerate(gains):
-        columns = recorded(HardeningJoint(seed=seed), float(gain))
+        columns = good_log(HardeningJoint(seed=seed), float(gain))
         found = estimate(LogInMemory(Path("log"), columns), configuration).curve
         assert len(found.branches) == 5
         for branch in found.branches:
@@ -116,18 +115,6 @@ def test_the_band_is_what_the_estimator_said_at_its_last_sample(awas: Awas) -> N
     assert np.interp(end["phi"], branch.phi, branch.sigma) == pytest.approx(end["sigma"], rel=5e-3)
     std = (end["interval"][1] - end["sigma"]) / 1.96
     assert np.interp(end["phi"], branch.phi, branch.sigma_std) == pytest.approx(std, rel=5e-3)
-
-
-def test_each_branch_ends_where_its_data_end(awas: Awas) -> None:
-    result, log, _ = awas
-    set_point = 100.0 - 1e3 * 0.0025 / (2 * np.pi) * log["theta_c"]
-    phi, step = log["q"] - log["theta"], np.ptp(set_point) / 4
-    for branch in result.curve.branches:
-        own = phi[np.abs(set_point - branch.set_point) <= step / 4]
-        assert own.min() <= branch.reach[0] < branch.reach[1] <= own.max()
-        assert branch.reach[0] - own.min() < 0.1 * np.ptp(own)
-        assert own.max() - branch.reach[1] < 0.1 * np.ptp(own)
-        assert branch.phi[0] < branch.reach[0] and branch.phi[-1] > branch.reach[1]
 
 
 def test_torque_is_the_integral_of_the_stiffness(awas: Awas) -> None:
@@ -183,8 +170,9 @@ def test_a_fixed_spring_with_an_offset_has_one_curve(tmp_path: Path) -> None:
     """A general polynomial: no motor torque tells its constant from a bias, as the band says."""
     general = CLOSED_FORM.replace("rls.m = 2", "rls.m = 1\nrls.symmetric = false")
     general = general.replace("rls.n = 2", "rls.n = 3")
-    result = estimated(recorded(MisfitJoint()), general, tmp_path)
+    result = estimated(good_log(MisfitJoint()), general, tmp_path)
     (branch,) = result.curve.branches
+    assert branch.phi[0] < branch.reach[0] < branch.reach[1] < branch.phi[-1]
     assert branch.tau_e_std is not None and branch.sigma_std is not None
     band = branch.torque_interval()
     assert band is not None and np.all(branch.tau_e_std > 0.1)
@@ -240,23 +228,14 @@ def test_going_on_adds_to_the_reach() -> None:
         assert single.phi == pytest.approx((-1.0, 0.9), abs=2e-3)
 
 
-def test_levels_of_the_set_point_are_found() -> None:
-    rng = np.random.default_rng(1)
-    levels = np.repeat([1.0, 2.0, 5.0], 1000)
-    moved = points(levels + 1e-3 * rng.normal(size=3000), rng.uniform(-1, 1, 3000))
-    found = [r.set_point for r in reaches(moved, [], one_curve=False)]
-    assert found == pytest.approx([1.0, 2.0, 5.0], abs=1e-3)
-    assert np.array_equal(nearest(found, np.array([1.1, 1.5, 2.2, 9.0])), [0, -1, 1, -1])
-
-
 @pytest.mark.parametrize("levels", [(1.0, 2.0, 5.0), (1.0, 5.0)])
-def test_the_way_from_one_level_of_the_set_point_to_the_next_is_none(
-    levels: Sequence[float],
-) -> None:
-    ways = [np.linspace(*ends, 25) for ends in pairwise(levels)]
-    path = np.concatenate([*(np.full(1000, level) for level in levels), *ways])
-    moved = points(path, np.random.default_rng(1).uniform(-1, 1, len(path)))
-    assert [r.set_point for r in reaches(moved, [], one_curve=False)] == pytest.approx(levels)
+def test_levels_of_the_set_point_are_found_but_not_the_ways_between(levels: list[float]) -> None:
+    rng, ways = np.random.default_rng(1), [np.linspace(*ends, 25) for ends in pairwise(levels)]
+    path = np.concatenate([np.repeat(levels, 1000), *ways])
+    moved = points(path + 1e-3 * rng.normal(size=len(path)), rng.uniform(-1, 1, len(path)))
+    found = [r.set_point for r in reaches(moved, [], one_curve=False)]
+    assert found == pytest.approx(levels, abs=1e-3)
+    assert np.array_equal(nearest([1.0, 2.0, 5.0], np.array([1.1, 1.5, 2.2, 9])), [0, -1, 1, -1])
 
 
 def test_a_band_that_is_wide_leaves_the_curve_visible() -> None:

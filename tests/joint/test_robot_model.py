@@ -9,8 +9,8 @@ import pytest
 from lxml import etree
 from urdf_parser_py.urdf import URDF
 
-from command_line import Shell, working_in
-from recorded_logs import CONFIGURATION, awas_log, write_log
+from command_line import Shell
+from recorded_logs import CONFIGURATION, awas_log, estimated
 from sigmahat.cli import main
 
 FILES = {"mjcf": "joint.xml", "sdf": "joint.sdf", "urdf": "joint.urdf", "drake": "joint.drake.sdf"}
@@ -21,14 +21,12 @@ SETTING = 'method = "FilteredRegression"\nprior.B = 0.2\nprior.tau_coulomb = 0.0
 @pytest.fixture(scope="module")
 def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Of an AwAS whose spring is a general polynomial, so that all of it has to be shown."""
+    configuration = CONFIGURATION + SETTING + "rls.n = 4\nrls.symmetric = false\n"
     folder = tmp_path_factory.mktemp("knee")
-    with working_in(folder):
-        configuration = CONFIGURATION + SETTING + "rls.n = 4\nrls.symmetric = false\n"
-        write_log(awas_log(1.0, 0.3, 10.0), Path("knee.parquet"), configuration)
-        assert main(["estimate", "knee.parquet", "--out", "out", "--quiet"]) == 0
-        for kind in FILES:
-            assert main(["export", "out", "--to", kind, "--quiet"]) == 0
-    return folder / "out"
+    out = estimated(folder, awas_log(1.0, 0.3, 10.0), configuration, "--out .")
+    for kind in FILES:
+        assert main(["export", str(out), "--to", kind, "--quiet"]) == 0
+    return out
 
 
 @pytest.fixture

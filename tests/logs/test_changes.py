@@ -8,7 +8,7 @@ import pytest
 
 from browser import opened
 from command_line import Shell
-from recorded_logs import REGRESSION, read_estimate, write_log
+from recorded_logs import REGRESSION, read_estimate, recorded, write_log
 from regression_joint import Joint
 from sigmahat.logs.curve import since_change
 from sigmahat.logs.job import Changes
@@ -21,8 +21,7 @@ return [...Bokeh.documents[0]._all_models.values()]
 
 def test_a_step_has_its_time_its_size_and_its_mark(shell: Shell) -> None:
     joint = Joint(duration=24.0, stiffness=lambda t: np.where(t < 12.0, 1.0, 0.5))
-    columns = dict(zip(("theta", "q", "theta_c", "tau"), joint.measurements().T, strict=False))
-    write_log({"t": joint.t, **columns}, Path("log.parquet"), REGRESSION)
+    write_log(recorded(joint), Path("log.parquet"), REGRESSION)
     (change,) = shell.json("estimate log.parquet --out out")["changes"]
     assert 12.0 < change["t [s]"] < 17.0
     assert change["relative"] == pytest.approx(-0.5, abs=0.05)

@@ -21,6 +21,9 @@ from recorded_logs import (
     write_log,
 )
 from sigmahat.fmi.master import Recording
+from sigmahat.logs.configuration import Port
+from sigmahat.logs.readers.formats import open_log
+from sigmahat.logs.units import convert
 from sigmahat.paper.scenarios import SCENARIOS
 from sigmahat.runs.engine import run
 
@@ -38,18 +41,13 @@ def log(table1: Recording) -> Columns:
     return {"t": table1.t, **{port: table1.plant[name] for port, name in COLUMNS.items()}}
 
 
-def estimated(shell: Shell, log: Path, configuration: str = AS_IN_THE_FMU) -> pa.Table:
-    """The table that the command writes to the folder out."""
-    Path("log.toml").write_text(configuration)
-    shell.run(f"estimate {log} --config log.toml --out out")
-    return read_estimate(Path("out"))
-
-
 @pytest.mark.parametrize("suffix", [".csv", ".parquet", ".mat", ".h5"])
 def test_replay_is_the_cosimulation(
     suffix: str, table1: Recording, log: Columns, shell: Shell
 ) -> None:
-    table = estimated(shell, write_log(log, Path(f"log{suffix}")))
+    write_log(log, Path(f"log{suffix}"), AS_IN_THE_FMU)
+    shell.run(f"estimate log{suffix} --out out")
+    table = read_estimate(Path("out"))
     assert set(table.column_names[: len(log)]) == set(log)
     expected = table1.estimators["RESIDUAL"]
     for name in expected.values:
@@ -65,114 +63,47 @@ def test_replay_is_the_cosimulation(
     assert {path.suffix for path in Path("out").iterdir()} == {".json", ".csv", table_suffix}
 
 
-def test_mat_of_version_7_3(table1: Recording, log: Columns, shell: Shell) -> None:
+def test_mat_of_version_7_3(log: Columns, tmp_path: Path) -> None:
     # GIVEN what MATLAB writes: HDF5 behind 512 bytes, vectors as rows of a matrix, a structure
-    path = Path("log.mat")
+    path = tmp_path / "log.mat"
     with h5py.File(path, "w", userblock_size=512) as file:
         for name, values in log.items():
             file[f"joint/{name}"] = values[None, :]
     with path.open("r+b") as raw:
         raw.write(b"MATLAB 7.3 MAT-file, Platform: GLNXA64")
-    table = estimated(shell, path, AS_IN_THE_FMU.replace('column = "', 'column = "joint.'))
-    np.testing.assert_allclose(table[SIGMA], table1.estimators["RESIDUAL"]["sigma"], rtol=STORED)
+    found = open_log(path)
+    assert all(np.array_equal(found.read(f"joint.{name}"), log[name]) for name in log)
 
 
-def test_a_gap_is_skipped_as_the_estimator_skips_it(log: Columns, shell: Shell) -> None:
-    # GIVEN rows taken out, and the same rows with nan instead
-    lost = np.r_[4000:4300]
-    holes = {name: np.delete(values, lost) for name, values in log.items()}
-    filled = {name: values.copy() for name, values in log.items()}
-    filled["q"][lost] = np.nan
-    results = []
-    for columns in (holes, filled):
-        write_log(columns, Path("log.parquet"), AS_IN_THE_FMU)
-        said = shell.run("estimate log.parquet --out out")
-        assert "300 ticks skipped in 1 gaps, the longest of 0.3 s at 4 s" in said
-        assert shell.err == ""  # no warning of the FMU for each gap
-        results.append(read_estimate(Path("out")))
-    # THEN the rows that both have are the same, and the skipped ones are marked
-    a, b = (result[SIGMA].to_numpy() for result in results)
-    assert np.array_equal(a, np.delete(b, lost))
-    valid = results[1]["estimate.valid"].to_numpy()
-    assert np.array_equal(np.flatnonzero(~valid), lost)
-    assert np.all(b[lost] == b[lost[0] - 1])
+ENCODER = Port("x", unit="counts", counts_per_turn=800, gear_ratio=50, sign=-1.0, zero=700)
 
 
-def test_units_sign_zero_gear_and_wrap(table1: Recording, log: Columns, shell: Shell) -> None:
-    # GIVEN the same log as a drive would write it
-    counts = np.round(log["theta"] * 40000 / (2 * np.pi))
-    columns = {
-        "time_ms": log["t"] * 1e3,
-        "enc": np.mod(700.0 - counts, 4096),
-        "link_deg": np.degrees(log["q"]) + 12.0,
-        "travel_mm": 100 - 2.5 / (2 * np.pi) * log["theta_c"],
-        "i_mA": log["tau"] / 0.05 * 1e3,
-    }
-    configuration = """
-[time]
-column = "time_ms"
-unit = "ms"
-[ports]
-theta = {column = "enc", unit = "counts", counts_per_turn = 800, gear_ratio = 50, sign = -1, zero = 700, wrap = 4096}
-q = {column = "link_deg", unit = "deg", zero = 12}
-theta_c = {column = "travel_mm", unit = "mm", zero = 100, mm_per_turn = -2.5}
-tau = {column = "i_mA", unit = "mA", torque_constant = 0.05}
-[parameters]
-samplePeriod = 0.001
-"""  # noqa: E501
-    assert np.ptp(counts) > 4096
-    table = estimated(shell, write_log(columns, Path("log.parquet")), configuration)
-    expected = table1.estimators["RESIDUAL"]["sigma"]
-    assert table[SIGMA].to_numpy()[1000:] == pytest.approx(expected[1000:], rel=STORED)
-
-
-def test_slow_and_uneven_columns_are_interpolated(log: Columns, shell: Shell) -> None:
-    # GIVEN theta_c every 10 ms, empty in between, and time stamps of the rows that jitter
-    rng = np.random.default_rng(1)
-    t = log["t"] + rng.uniform(-2e-4, 2e-4, len(log["t"]))
-    columns = {name: np.interp(t, log["t"], log[name]) for name in COLUMNS}
-    columns["theta_c"][np.arange(len(t)) % 10 != 0] = np.nan
-    write_log({"t": t, **columns}, Path("log.parquet"), AS_IN_THE_FMU + "encoder.theta = 0\n")
-    output = shell.run("estimate log.parquet --out out")
-    assert re.search(r"theta_c: 1\d{4} ticks interpolated, its samples are 0.01 s apart", output)
-    assert re.search(r"theta: 1\d{4} ticks interpolated", output)
-    truth = 2 * 14220 * ((100 - 0.0025 / (2 * np.pi) * 1e3 * log["theta_c"]) / 1e3) ** 2
-    sigma = read_estimate(Path("out"))[SIGMA].to_numpy()
-    assert sigma[5000:-10] == pytest.approx(truth[5000:-10], rel=0.05)
-
-
-def test_columns_with_times_of_their_own(log: Columns, shell: Shell) -> None:
-    # GIVEN data sets of several lengths THEN ticks at their common samples are exact
-    columns = {**log, "slow_t": log["t"][::10], "theta_c": log["theta_c"][::10]}
-    configuration = AS_IN_THE_FMU.replace('"theta_c"', '"theta_c"\ntime = "slow_t"')
-    table = estimated(shell, write_log(columns, Path("log.h5")), configuration)
-    assert "theta_c" not in table.column_names  # it is no column of the table of t
-    found = table["estimate.setPoint [1]"].to_numpy()[::10]
-    scale = -0.0025 / (2 * np.pi) * 1e3
-    assert found == pytest.approx(100 + scale * columns["theta_c"], rel=STORED)
+@pytest.mark.parametrize(
+    ("name", "port", "value", "expected"),
+    [
+        ("theta", ENCODER, 700.0 - 40_000.0, 2 * np.pi),
+        ("q", Port("x", unit="deg", zero=12), 192.0, np.pi),
+        ("q", Port("x", unit="mrad", gear_ratio=-2.0), 500.0, -0.25),
+        ("theta_c", Port("x", unit="mm", zero=100, mm_per_turn=-2.5), 97.5, 2 * np.pi),
+        ("theta_c", Port("x", unit="mm"), 97.5, 97.5),
+        ("tau", Port("x", unit="mA", torque_constant=0.05, sign=-1.0), 1000.0, -0.05),
+        ("tau", Port("x", scale=3.0, zero=-1.0), 1.0, 6.0),
+    ],
+)
+def test_units_sign_zero_and_gear(name: str, port: Port, value: float, expected: float) -> None:
+    assert convert(name, port, np.array([value])) == pytest.approx([expected])
 
 
 def test_other_columns_stay_as_they_are(log: Columns, shell: Shell) -> None:
-    path = write_log({**log, "note": np.array(["x, y"] * len(log["t"]))}, Path("log.csv"))
-    estimated(shell, path)
+    log = {**log, "note": np.array(["x, y"] * len(log["t"]))}
+    path = write_log(log, Path("log.csv"), AS_IN_THE_FMU)
+    shell.run("estimate log.csv --out out")
     ours = path.read_text().splitlines()
     theirs = Path("out/estimate.csv").read_text().splitlines()
     assert len(ours) == len(theirs)
     for row in (1, 777, 15001):
         assert theirs[row].startswith(ours[row].split(",")[0])
         assert '"x, y"' in theirs[row]
-
-
-@pytest.mark.parametrize(("period", "rate"), [(0.001, None), (0.01, 100.0)])
-def test_filters_are_not_faster_than_the_samples(
-    period: float, rate: float | None, log: Columns, shell: Shell
-) -> None:
-    every = round(period / 0.001)
-    columns = {name: values[::every] for name, values in log.items()}
-    write_log(columns, Path("log.parquet"), REGRESSION.replace("= 0.001", f"= {period}"))
-    used = shell.json("estimate log.parquet")["parameters"]
-    assert used["regression.bandwidth"] == (rate or 350.0)
-    assert used["residual.K_I"] == (rate or 300.0)
 
 
 def test_json_and_quiet(log: Columns, shell: Shell) -> None:

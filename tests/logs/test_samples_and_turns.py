@@ -1,13 +1,18 @@
 """Samples at ticks: a counter that goes on during a gap, and logs of too many ticks."""
 
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+import sigmahat
+from recorded_logs import configured, in_memory
+from sigmahat.fmi.instance import Fmu
 from sigmahat.logs.configuration import Configuration, Port, Time
 from sigmahat.logs.log import LogError, LogInMemory
-from sigmahat.logs.sampling import sample
+from sigmahat.logs.replay import parameters
+from sigmahat.logs.sampling import Samples, sample
 
 GEAR, COUNTS, T = 80, 2**14, 2e-3
 PERIOD = 2 * np.pi / GEAR  # of the counter of the motor, behind the gear [rad]
@@ -39,6 +44,52 @@ def test_turns_during_a_gap_are_those_of_the_other_encoder(gap: slice) -> None:
     turns = round((theta[gap.stop] - theta[gap.start - 1]) / PERIOD)
     noted = [note for note in samples.notes if "periods of its counter" in note]
     assert len(noted) == (abs(turns) > 0)
+
+
+def sampled(columns: dict[str, np.ndarray], **ports: Port) -> Samples:
+    """A log with a column "t", its columns being those of the ports, at ticks of 2 ms."""
+    setup = Configuration(Path("log.toml"), Time("t"), ports, {})
+    return sample(LogInMemory(Path("log"), columns), setup, T)
+
+
+def test_rows_that_are_lost_are_ticks_without_a_value_as_empty_cells_are() -> None:
+    t, lost = T * np.arange(1000), np.r_[400:700]
+    empty = np.sin(t)
+    empty[lost] = np.nan
+    for columns in (
+        {"t": np.delete(t, lost), "x": np.delete(empty, lost)},
+        {"t": t, "x": empty},
+    ):
+        found = sampled(columns, q=Port("x"))
+        np.testing.assert_array_equal(found.values[:, 0], empty)
+        assert "300 ticks skipped in 1 gaps, the longest of 0.6 s at 0.8 s" in found.notes[-1]
+
+
+def test_slow_and_uneven_columns_are_interpolated() -> None:
+    """GIVEN a column that is empty but for every tenth row, and rows at times that jitter."""
+    t = T * (np.arange(1000) + np.random.default_rng(1).uniform(-0.2, 0.2, 1000))
+    slow = np.where(np.arange(1000) % 10, np.nan, 5 * t)
+    found = sampled({"t": t, "x": 3 * t, "slow": slow}, theta=Port("x"), theta_c=Port("slow"))
+    at = t[0] + T * np.arange(len(found.values))
+    np.testing.assert_allclose(found.values[:980], np.outer(at, [3, 5])[:980], atol=3e-3 * T)
+    said = "\n".join(found.notes)
+    assert re.search(r"theta: 9\d\d ticks interpolated", said)
+    assert re.search(r"theta_c: 9\d\d ticks interpolated, its samples are 0.0[12]\d* s apart", said)
+
+
+def test_a_column_with_times_of_its_own() -> None:
+    t = T * np.arange(1000)
+    columns = {"t": t, "x": t**2, "slow_t": t[::10], "slow": t[::10] ** 3}
+    found = sampled(columns, q=Port("x"), theta_c=Port("slow", time="slow_t")).values
+    np.testing.assert_array_equal(found[:, 0], t**2)
+    np.testing.assert_array_equal(found[::10, 1], t[::10] ** 3)
+
+
+@pytest.mark.parametrize(("period", "rate"), [(0.001, None), (0.01, 100.0)])
+def test_filters_are_not_faster_than_the_samples(period: float, rate: float | None) -> None:
+    with Fmu(sigmahat.fmu("StiffnessEstimator")) as fmu:
+        start = parameters(fmu, in_memory(configured(f"samplePeriod = {period}")))
+        assert start.get("regression.bandwidth") == start.get("residual.K_I") == rate
 
 
 def test_a_unit_of_time_that_does_not_fit() -> None:

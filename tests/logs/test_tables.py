@@ -9,17 +9,17 @@ import pytest
 from mcap.reader import make_reader
 
 import sigmahat
-from command_line import Shell, working_in
+from command_line import Shell
 from recorded_logs import (
     CONFIGURATION,
     REGRESSION,
     STORED,
     awas_log,
+    estimated,
     plain_log,
     read_estimate,
     write_log,
 )
-from sigmahat.cli import main
 from sigmahat.logs.log import LogError
 from sigmahat.logs.output import EstimateTable
 from sigmahat.logs.readers.formats import open_log
@@ -147,13 +147,9 @@ def test_estimates_are_read_as_they_were_written(suffix: str, shell: Shell) -> N
 @pytest.fixture(scope="module")
 def knee(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with a log, its configuration and results."""
-    folder = tmp_path_factory.mktemp("knee")
     columns = awas_log(1.0, 0.3, 3.0)
     columns["q"][500] = np.nan
-    with working_in(folder):
-        write_log(columns, Path("knee.parquet"), REGRESSION)
-        assert main(["estimate", "knee.parquet", "--quiet", "--out", ".", "--to", "mcap"]) == 0
-    return folder
+    return estimated(tmp_path_factory.mktemp("knee"), columns, REGRESSION, "--out . --to mcap")
 
 
 def test_mcap_has_the_rows_of_the_table_with_units(knee: Path) -> None:

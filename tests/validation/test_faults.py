@@ -17,10 +17,8 @@ WRAPPED = RIGHT.replace("zero = 1500", "zero = 1500\nwrap = 4096").replace(
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with two logs of a joint, whose counter was in other turns at the start.
-
-    The second begins at 0.5 rad, under a torque of 1 N.m on the joint.
-    """
+    """A folder with two logs of a joint, whose counter was in other turns at the start. The second
+    begins at 0.5 rad, under a torque of 1 N.m on the joint."""
     folder = tmp_path_factory.mktemp("faults")
     for name, start, load in (("first", 0.0, 0.0), ("second", 0.5, 1.0)):
         plant = {**KNEE, "initial.q": start, "initial.theta": start}

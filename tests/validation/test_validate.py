@@ -6,9 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from command_line import Shell, working_in
-from recorded_logs import CONFIGURATION, REGRESSION, Array, awas_log, write_log
-from sigmahat.cli import main
+from command_line import Shell
+from recorded_logs import CONFIGURATION, REGRESSION, Array, awas_log, estimated, write_log
 from sigmahat.validation.validate import agreement
 
 KNEE = REGRESSION + "prior.B = 0.2\n"
@@ -19,16 +18,12 @@ SOFT = {"spring.k_s": 0.8 * 14220.0}
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder in which a first log was learned from, with three others."""
-    folder = tmp_path_factory.mktemp("validate")
-    with working_in(folder):
-        write_log(awas_log(1.0, 0.3, DURATION), Path("knee.parquet"), KNEE)
-        write_log(awas_log(1.3, 0.3, DURATION, seed=2), Path("same.parquet"))
-        write_log(awas_log(1.3, 0.3, DURATION, seed=2, plant=SOFT), Path("softer.parquet"))
-        at_rest = awas_log(1.0, 0.3, 3.0, seed=3)
-        still = {name: np.full_like(values, values[0]) for name, values in at_rest.items()}
-        write_log({**still, "t": at_rest["t"]}, Path("still.parquet"))
-        assert main(["estimate", "knee.parquet", "--quiet"]) == 0
-    return folder
+    folder, log = tmp_path_factory.mktemp("validate"), awas_log(1.0, 0.3, DURATION)
+    write_log(awas_log(1.3, 0.3, DURATION, seed=2), folder / "same.parquet")
+    write_log(awas_log(1.3, 0.3, DURATION, seed=2, plant=SOFT), folder / "softer.parquet")
+    still = {name: np.full_like(values, values[0]) for name, values in log.items()}
+    write_log({**still, "t": log["t"]}, folder / "still.parquet")
+    return estimated(folder, log, KNEE)
 
 
 @pytest.fixture

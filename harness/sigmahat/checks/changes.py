@@ -67,10 +67,8 @@ def gear_of(theta: Port, slope: float, half_width: float = 0.0) -> Change:
 
 
 def _simplest(gear: float, half_width: float) -> float:
-    """The integer with the most zeros in an interval, else the nearest integer, else four digits.
-
-    half_width  of the interval, relative [1]
-    """
+    """The integer with the most zeros in an interval, whose half width is relative [1]; else the
+    nearest integer, else four digits."""
     for digits in range(len(f"{gear:.0f}")):
         likely = float(f"{gear:.{digits + 1}g}")
         if likely.is_integer() and abs(likely / gear - 1) < half_width:

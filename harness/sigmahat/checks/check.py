@@ -1,7 +1,5 @@
 """Checks a configuration against its log: the job of `sigmahat check`."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -12,8 +10,9 @@ import numpy as np
 from sigmahat.checks.changes import distance
 from sigmahat.checks.columns import at_rest, columns
 from sigmahat.checks.dynamics import dynamics
-from sigmahat.checks.findings import Checked, Finding, Kind, Proposal, Severity
+from sigmahat.checks.findings import Checked, Finding, Kind, Severity
 from sigmahat.checks.relation import relation, slope_of
+from sigmahat.checks.text import DOUBTS
 from sigmahat.checks.view import View, all_parameters, view
 from sigmahat.fmi.instance import FmuError, Slave, Value, installed
 from sigmahat.identification.noise import variance
@@ -34,15 +33,6 @@ _ERROR = 100  # a contradiction counts more than all notes together
 _TORQUE = 3.0  # ratio of torques, measured to configured
 
 Outputs = Mapping[str, np.ndarray[Any, Any]]
-_KEYS = {
-    "NotExcited": "ports.q.column",
-    "Misfit": "rls.n",
-    "OutOfRange": "range.phi",
-    "FrictionOutsidePrior": "motor.D_theta",
-    "InertiaOutsidePrior": "motor.B",
-    "NegativeStiffness": "ports.q.sign",
-    "Change": "rls.n",
-}
 
 
 def check(log: Log, configuration: Configuration) -> Checked:
@@ -134,8 +124,13 @@ def _tried(seen: View, finding: Finding) -> Finding:
     every = [(finding.key, finding.proposed), *finding.others]
     best, least = None, math.inf
     for key, value in every:
-        left = _left(seen, key, value)
-        if left is None or any((e.kind, e.about) == (finding.kind, finding.about) for e in left):
+        if value is None:
+            continue
+        try:
+            left = _contradictions(view(seen.log, changed(seen.configuration, key, value)))
+        except (LogError, FmuError):
+            continue
+        if any((e.kind, e.about) == (finding.kind, finding.about) for e in left):
             continue
         weight = sum(_ERROR if each.severity is Severity.WRONG else 1 for each in left)
         if weight < least:
@@ -144,16 +139,6 @@ def _tried(seen: View, finding: Finding) -> Finding:
         return replace(finding, proposed=None)
     others = [each for each in every if each != best]
     return replace(finding, key=best[0], proposed=best[1], others=others)
-
-
-def _left(seen: View, key: str, value: Proposal | None) -> Sequence[Finding] | None:
-    """What is found with another value of a key; None if the value cannot be tried."""
-    if value is None:
-        return None
-    try:
-        return _contradictions(view(seen.log, changed(seen.configuration, key, value)))
-    except (LogError, FmuError):
-        return None
 
 
 def changed(configuration: Configuration, key: str, value: Any) -> Configuration:
@@ -294,7 +279,7 @@ def _claims(outputs: Outputs) -> Iterator[Finding]:
     if misfit > _MISFIT:
         yield Finding(Kind.MISFIT, Severity.NOTE, "rls.n", misfit, "", 1.0)
     doubts = outputs["doubt"][len(outputs["doubt"]) // 2 :]
-    for item, key in _KEYS.items():
+    for item, (key, _) in DOUBTS.items():
         share = float(np.mean(doubts == item))
         if share > _DOUBTED and not (item == "Misfit" and misfit > _MISFIT):
             yield Finding(Kind.DOUBT, Severity.NOTE, key, share, "", 0.0, about=item)

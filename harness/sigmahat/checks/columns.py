@@ -48,20 +48,18 @@ def columns(seen: View) -> Iterator[Finding]:
 def at_rest(seen: View) -> Iterator[Finding]:
     """Positions that do not change: such a log has no information on the joint."""
     ports = [name for name in ("theta", "q") if name in seen.samples.names]
-    still = [name for name in ports if _is_still(seen, name)]
+    still = []
+    for name in ports:
+        values = seen.samples.values[:, list(seen.samples.names).index(name)]
+        known = values[np.isfinite(values)]
+        is_given = seen.configuration.ports[name].value is not None
+        if len(known) and float(np.ptp(known)) == 0 and not is_given:
+            still.append(name)
     if still and seen.every["modality"] != "Sensor":
         what = "joint" if still == ports else still[0]
         measured = float(len(seen.samples.values)) * seen.T
         key = f"ports.{still[-1]}.column"
         yield Finding(Kind.AT_REST, Severity.WRONG, key, measured, "s", about=what)
-
-
-def _is_still(seen: View, name: str) -> bool:
-    """Whether a position is constant, although the configuration gives no constant."""
-    values = seen.samples.values[:, list(seen.samples.names).index(name)]
-    known = values[np.isfinite(values)]
-    is_known = seen.configuration.ports[name].value is not None or not len(known)
-    return not is_known and float(np.ptp(known)) == 0
 
 
 def _jumps(name: str, port: Port, values: Array) -> Iterator[Finding]:

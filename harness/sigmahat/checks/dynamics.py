@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -36,8 +36,10 @@ def dynamics(here: Relation) -> Iterator[Finding]:
     zero = _zero(seen, found)
     if zero is not None:
         yield zero
-    elif found.form.symmetric:
-        yield from _asymmetry(seen, found)
+    elif found.form.symmetric and explains(found.fit, other := with_all_powers(seen, found.form)):
+        # The spring is softer to one side.
+        times, key = math.sqrt(found.fit.error / other.error), "rls.symmetric"
+        yield Finding(Kind.ASYMMETRY, Severity.NOTE, key, times, "", 1.0, proposed=False)
     if not seen.has_sensor:
         yield from _delays(seen, found)
         yield from inertia(seen, found)
@@ -47,28 +49,24 @@ def _delays(seen: View, found: Fitted) -> Iterator[Finding]:
     """A delay of the torque, or between the encoders. A late link also looks like an early torque,
     and a late torque like a link that is early."""
     late, lag = _late(seen, found), _encoder_lag(seen, found)
-    if late is not None and (lag is None or (late.finding.measured > 0 and late.error < lag.error)):
-        yield late.finding
+    if late is not None and (lag is None or (late[0].measured > 0 and late[1] < lag[1])):
+        yield late[0]
     elif lag is not None:
-        yield lag.finding
+        yield lag[0]
 
 
-@dataclass(frozen=True)
-class _Delay:
-    finding: Finding
-    error: float  # sum of the squared errors without the delay
+_Delay = tuple[Finding, float]  # and the sum of the squared errors without the delay
 
 
 def _sign(seen: View, found: Fitted) -> Finding | None:
     """A torque of wrong sign, or a wrong deformation if only the stiffness is negative."""
-    value, half = found.linear.value, found.linear.half_width
-    score = {name: value[name] / half[name] for name in value if half[name] > 0}
+    score = found.scores()
     stiffness = -np.sign(seen.gamma) * score[LINEAR]
     if not stiffness < -1:
         return None
     port = "tau_e_sensor" if seen.has_sensor else "tau"
     signs = [np.sign(score[name]) for name in MOTOR if abs(score.get(name, 0.0)) > 1]
-    sigma = -seen.gamma * value[LINEAR] / found.spring.units[0]
+    sigma = -seen.gamma * found.linear.value[LINEAR] / found.spring.units[0]
     if seen.has_sensor or (signs and sum(signs) < 0):
         key, proposed = f"ports.{port}.sign", -seen.configuration.ports[port].sign
         return Finding(Kind.SIGN, Severity.WRONG, key, sigma, "N.m/rad", None, proposed, (), port)
@@ -104,12 +102,10 @@ def _zero(seen: View, found: Fitted) -> Finding | None:
 
     A polynomial with even powers has its zero anywhere, but in the range of the deformations.
     """
-    pieces = seen.pieces
-    zero = found.spring.zero(found.fit, pieces)
+    zero, covered = found.spring.zero(), found.spring.covered
     if not math.isfinite(zero):
         return None
-    covered = max(float(np.max(p.phi)) for p in pieces) - min(float(np.min(p.phi)) for p in pieces)
-    half_width = found.spring.half_width(found.fit, zero, pieces)
+    half_width = found.spring.half_width(zero)
     if not (half_width < _MATTERS * covered and abs(zero) > max(half_width, _MATTERS * covered)):
         return None
     keys = [
@@ -117,30 +113,17 @@ def _zero(seen: View, found: Fitted) -> Finding | None:
         for name, angle in (("q", zero), ("theta", -zero))
         if (port := seen.configuration.ports.get(name)) is not None
     ]
+    bias = 0.0  # that the estimator expects
+    if seen.every["method"] == "FilteredRegression":
+        bias = _STD * float(seen.every["prior.bias"]) * float(seen.every["prior.tau_e"])
+    torque = abs(seen.gamma * found.linear.value[LINEAR] * zero / found.spring.units[0])
     # A zero within the deformations of the log is only a note, because identify sets this zero.
-    is_wrong = abs(zero) > covered / 2 and _is_more_than_bias(seen, found, zero)
+    is_wrong = abs(zero) > covered / 2 and torque > bias
     if not (is_wrong or found.form.symmetric):
         return None
     severity = Severity.WRONG if is_wrong else Severity.NOTE
     (key, proposed), *others = keys
     return Finding(Kind.ZERO, severity, key, zero, "rad", 0.0, proposed, others)
-
-
-def _asymmetry(seen: View, found: Fitted) -> Iterator[Finding]:
-    """A spring that is softer to one side, where only odd powers are used."""
-    with_all = with_all_powers(seen, found.form)
-    if explains(found.fit, with_all):
-        times = math.sqrt(found.fit.error / with_all.error)
-        key = "rls.symmetric"
-        yield Finding(Kind.ASYMMETRY, Severity.NOTE, key, times, "", 1.0, proposed=False)
-
-
-def _is_more_than_bias(seen: View, found: Fitted, zero: float) -> bool:
-    """Whether the torque of the spring at the zero is more than a bias of FilteredRegression."""
-    if seen.every["method"] != "FilteredRegression":
-        return True
-    torque = abs(seen.gamma * found.linear.value[LINEAR] * zero / found.spring.units[0])
-    return torque > _STD * float(seen.every["prior.bias"]) * float(seen.every["prior.tau_e"])
 
 
 def _late(seen: View, found: Fitted) -> _Delay | None:
@@ -164,7 +147,7 @@ def _late(seen: View, found: Fitted) -> _Delay | None:
     proposed = None if is_expected else float(f"{port.delay + late.value:.3g}")
     key = "ports.tau.delay"
     finding = Finding(Kind.TORQUE_LAG, severity, key, late.value, "s", 0.0, proposed)
-    return _Delay(finding, late.fit.error)
+    return finding, late.fit.error
 
 
 def _encoder_lag(seen: View, found: Fitted) -> _Delay | None:
@@ -200,7 +183,7 @@ def _encoder_lag(seen: View, found: Fitted) -> _Delay | None:
     key = "ports.q.delay"
     least_lag = "" if is_known else "at least "
     finding = Finding(Kind.ENCODER_LAG, severity, key, lag, "s", 0.0, proposed, others, least_lag)
-    return _Delay(finding, without.error)
+    return finding, without.error
 
 
 _AWAS = 2.3e-5  # start value of motor.B [kg.m2]

@@ -1,7 +1,5 @@
 """What a check of a log and its configuration found, as data. Sentences are made in text.py."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from enum import Enum

@@ -35,6 +35,11 @@ class Fitted:
     linear: Fit  # fit with a linear spring
     spring: Spring  # the polynomial
 
+    def scores(self) -> dict[str, float]:
+        """Coefficients with a linear spring, over half their intervals; only what is determined."""
+        value, half = self.linear.value, self.linear.half_width
+        return {name: value[name] / half[name] for name in value if 0 < half[name] < math.inf}
+
 
 def fitted(seen: View, f_0: float | None = None) -> Fitted | None:
     """Fits the motor equation, or with a torque sensor the spring alone.
@@ -46,14 +51,18 @@ def fitted(seen: View, f_0: float | None = None) -> Fitted | None:
     """
     if seen.T > _SLOWEST or all(is_only_noise(piece.tau) for piece in seen.pieces):
         return None
-    f_0 = f_0 or _band(seen)
+    if f_0 is None:
+        longest = max(seen.pieces, key=lambda piece: len(piece.theta))
+        noise = TorqueNoise.of(longest.tau, longest.theta, seen.every, seen.T)
+        limit = math.inf if seen.has_sensor else coherent_range(longest, seen.gamma, noise)
+        f_0 = min(noise.bandwidth, limit)
     m_most = _ORDERS if np.ptp(seen.pieces[0].set_point) > 0 else 1
     symmetric = bool(seen.every["rls.symmetric"])
-    n_most = _ORDERS if symmetric else 2 * _ORDERS  # so the highest power is about the same
-    form = Form(f_0, min(2.5 * f_0, regression.WIDEST / seen.T), n_most, m_most, symmetric)
-    form, system = _chosen(seen, form)
+    form = Form(f_0, min(2.5 * f_0, regression.WIDEST / seen.T), _ORDERS, m_most)
+    form, system = _chosen(seen, form if symmetric else form.with_all_powers())
     line = _equations(seen, replace(form, n=1, m=1, symmetric=True))
-    return Fitted(form, fit(system), fit(line), Spring(form, system.units))
+    whole = fit(system)
+    return Fitted(form, whole, fit(line), Spring(form, whole, seen.pieces))
 
 
 @dataclass(frozen=True)
@@ -94,7 +103,7 @@ def gear_error(seen: View, form: Form) -> Corrected | None:
     spring has all powers: a spring of another form would look like a small part of theta.
     """
     whole = 1.0
-    form = replace(form, n=2 * _ORDERS, symmetric=False)
+    form = replace(form, n=_ORDERS).with_all_powers()
     for _ in range(_STEPS):
         scaled = [
             replace(
@@ -140,24 +149,13 @@ def explains(before: Fit, after: Fit) -> bool:
     return after.error < _BETTER * before.error and regression.is_worse(before, after)
 
 
-def _band(seen: View) -> float:
-    """Low pass of the equations, as identify chooses it [Hz]."""
-    longest = max(seen.pieces, key=lambda piece: len(piece.theta))
-    noise = TorqueNoise.of(longest.tau, longest.theta, seen.every, seen.T)
-    if seen.has_sensor:
-        return noise.bandwidth
-    return min(noise.bandwidth, coherent_range(longest, seen.gamma, noise))
-
-
 def with_all_powers(seen: View, form: Form) -> Fit:
-    form = replace(form, n=2 * _ORDERS, symmetric=False)
-    return fit(_chosen(seen, form)[1])
+    return fit(_chosen(seen, replace(form, n=_ORDERS).with_all_powers())[1])
 
 
 def _chosen(seen: View, form: Form) -> tuple[Form, Equations]:
     """The form and its equations with the orders that predict best, up to those of `form`."""
-    (n, m), _ = regression.choose(_equations(seen, form), form.n, form.m)
-    form = replace(form, n=n, m=m)
+    form, _ = regression.choose(_equations(seen, form), form)
     return form, _equations(seen, form)
 
 
@@ -171,5 +169,4 @@ def _equations(seen: View, form: Form) -> Equations:
 def moved(signal: Array, ticks: float) -> Array:
     """A signal, shifted to earlier times by a number of ticks."""
     at = np.arange(len(signal), dtype=np.float64)
-    earlier: Array = np.interp(at + ticks, at, signal)
-    return earlier
+    return np.interp(at + ticks, at, signal)

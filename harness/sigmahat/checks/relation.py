@@ -11,7 +11,7 @@ mistake, such as a gear ratio with one zero too many, or if it is negative.
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -23,9 +23,7 @@ from sigmahat.checks.findings import Finding, Kind, Severity
 from sigmahat.checks.motor import LINEAR, Fitted, fitted, gear_error
 from sigmahat.checks.view import View
 from sigmahat.identification.noise import low_pass
-from sigmahat.identification.regression import Signals, is_worse
-from sigmahat.logs.configuration import Port
-from sigmahat.logs.log import Array
+from sigmahat.identification.regression import MOTOR, Signals, is_worse
 
 PORTS = ("theta", "q")
 _LIKE = math.log(1.5)
@@ -59,11 +57,13 @@ def slope_of(pieces: Sequence[Signals], T: float) -> Slope | None:
     if not pieces:
         return None
     motions = [np.column_stack([p.theta, p.theta + p.phi]) for p in pieces]
-    slow = [_slow(each, T) for each in motions]
-    is_slow = all(each is not None for each in slow)
-    both = np.concatenate(
-        [m - m.mean(axis=0) if s is None else s for m, s in zip(motions, slow, strict=True)]
-    )
+    motions = [each - each.mean(axis=0) for each in motions]
+    slow = [low_pass(each, min(_SLOW, 0.1 / T), T) for each in motions]
+    enough = [
+        bool(np.all(np.std(s, axis=0) > _ENOUGH * np.std(m, axis=0)))
+        for s, m in zip(slow, motions, strict=True)
+    ]
+    both = np.concatenate([s if e else m for s, m, e in zip(slow, motions, enough, strict=True)])
     variances = np.var(both, axis=0)
     if not np.all(variances > 0):
         return None
@@ -72,14 +72,7 @@ def slope_of(pieces: Sequence[Signals], T: float) -> Slope | None:
     if abs(correlation) < _CORRELATED:
         return None
     value = float(np.sign(correlation) * np.sqrt(variances[1] / variances[0]))
-    return Slope(value, is_slow, bool(abs(correlation) > _RIGID))
-
-
-def _slow(motion: Array, T: float) -> Array | None:
-    """The slow part of a motion; None if this part is too small."""
-    motion = motion - motion.mean(axis=0)
-    slow = low_pass(motion, min(_SLOW, 0.1 / T), T)
-    return slow if np.all(np.std(slow, axis=0) > _ENOUGH * np.std(motion, axis=0)) else None
+    return Slope(value, all(enough), bool(abs(correlation) > _RIGID))
 
 
 @dataclass(frozen=True)
@@ -94,15 +87,13 @@ class Relation:
 def relation(seen: View) -> Relation:
     """Compares the motions of q and theta, and corrects scale and sign."""
     here = Relation((), seen, fitted(seen))
-    if not {"theta", "q"} <= set(seen.samples.names) or _is_from_torque(seen.configuration.ports):
+    if not {"theta", "q"} <= set(seen.samples.names):
         return here
+    ports = seen.configuration.ports
+    if "tau_e_sensor" in ports and ports["theta"].column == ports["tau_e_sensor"].column:
+        return here  # theta is the compliance of a test bench: it drives no link
     found = slope_of(seen.pieces, seen.T)
     return here if found is None else _sign(_scale(here, found))
-
-
-def _is_from_torque(ports: Mapping[str, Port]) -> bool:
-    """Whether theta is the compliance of a test bench, from the torque: theta drives no link."""
-    return "tau_e_sensor" in ports and ports["theta"].column == ports["tau_e_sensor"].column
 
 
 def _scale(here: Relation, slope: Slope) -> Relation:
@@ -128,20 +119,18 @@ def _scale(here: Relation, slope: Slope) -> Relation:
     }
     key, listed = best.key, list(others.items())
     what = (key, slope.value, "", 1.0, best.value, listed, "held" if size > 1 else "")
-    if size > 1 and not _is_gamma(best, here.seen) and _is_sane(here):
+    if size > 1 and not _is_gamma(best, here.seen) and _is_positive(here.seen, here.fitted):
+        # A hand may have moved the link while a drive held the motor.
         return replace(here, findings=[Finding(Kind.SLOPE, Severity.NOTE, *what)])
     repaired = _scaled(here.seen, best.port, best.factor)
     return Relation([Finding(Kind.SLOPE, Severity.WRONG, *what)], repaired, fitted(repaired))
 
 
-def _is_sane(here: Relation) -> bool:
-    """Whether the torque of the log as it is gives motor data and a stiffness above 0: a hand may
-    have moved the link while a drive held the motor.
-    """
-    found = here.fitted
+def _is_positive(seen: View, found: Fitted | None) -> bool:
+    """Whether a log surely has a stiffness above 0, and motor data that are not below it."""
     if found is None or not abs(found.linear.value[LINEAR]) > found.linear.half_width[LINEAR]:
         return False
-    return not _is_stiffness_negative(here.seen, found) and _sign_of_motor(found) >= 0
+    return not _is_stiffness_negative(seen, found) and _sign_of_motor(found) >= 0
 
 
 def _likely(seen: View, slope: Slope) -> Change | None:
@@ -241,12 +230,8 @@ def _sign_of_motor(found: Fitted | None) -> float:
     """Common sign of inertia and friction; 0 if the fit does not determine this sign."""
     if found is None:
         return 0.0
-    scores = [
-        found.linear.value[name] / found.linear.half_width[name]
-        for name in ("B", "D_theta", "tau_coulomb")
-        if 0 < found.linear.half_width.get(name, np.inf) < np.inf
-    ]
-    return float(np.sign(sum(score for score in scores if abs(score) > 1)))
+    scores = found.scores()
+    return float(np.sign(sum(scores[n] for n in MOTOR if abs(scores.get(n, 0.0)) > 1)))
 
 
 def _scaled(seen: View, name: str, factor: float) -> View:

@@ -12,15 +12,19 @@ TITLES = {
     Severity.NOTE: "worth a look:",
     Severity.RESTS_ON: "assumptions that no log can verify:",
 }
-_DOUBTS = {
-    "NotExcited": "the motion was too small or too short",
-    "Misfit": "the log contradicts the model",
-    "OutOfRange": "the deformation is far beyond range.phi",
-    "FrictionOutsidePrior": "friction is further from motor.D_theta than prior.D_theta, or below 0",
-    "InertiaOutsidePrior": "the inertia is further from motor.B than prior.B allows",
-    "NegativeStiffness": "the stiffness found is negative",
-    "Change": "the stiffness seems to change",
+DOUBTS = {
+    "NotExcited": ("ports.q.column", "the motion was too small or too short"),
+    "Misfit": ("rls.n", "the log contradicts the model"),
+    "OutOfRange": ("range.phi", "the deformation is far beyond range.phi"),
+    "FrictionOutsidePrior": (
+        "motor.D_theta",
+        "friction is further from motor.D_theta than prior.D_theta, or below 0",
+    ),
+    "InertiaOutsidePrior": ("motor.B", "the inertia is further from motor.B than prior.B allows"),
+    "NegativeStiffness": ("ports.q.sign", "the stiffness found is negative"),
+    "Change": ("rls.n", "the stiffness seems to change"),
 }
+"""Items of the FMU's output doubt: the key to look at, and what it says."""
 _ABSENT = {
     "tau_coulomb": "Coulomb friction",
     "load_friction": "friction by load",
@@ -90,7 +94,7 @@ def _what(f: Finding) -> str:
         ratio=f.measured / f.expected if f.expected else math.nan,
         gear=f"the gear ratio of {f.about}" if f.key == "motor.gamma" else "motor.gamma",
         given=f.expected,
-        reason=_DOUBTS.get(f.about, f.about),
+        reason=DOUBTS.get(f.about, ("", f.about))[1],
         effect=_ABSENT.get(f.about, f.about),
         gain=f"known to {100 * f.expected:.3g} %" if f.expected else "taken as exact",
     )

@@ -83,10 +83,8 @@ def unit_of_steps(facts: Facts) -> str | None:
 
 
 def smallest_step(finite: Array, fewest: int) -> float:
-    """Step of which nearly all differences of the values are multiples; inf without such a step.
-
-    fewest  least number of steps between distinct values
-    """
+    """Step of which nearly all differences of the values are multiples; inf without such a step, or
+    with fewer steps between distinct values."""
     distinct = np.unique(finite)
     steps = np.diff(distinct)
     steps = steps[steps > 1e-9 * max(np.ptp(distinct), 1e-300)] if len(steps) else steps
@@ -170,10 +168,8 @@ def _plausible(step: float, least: float, most: float) -> str | None:
 
 
 def interval(times: Array) -> float:
-    """Usual time between rows [s], from times in s: without gaps, rounding of the times and jitter.
-
-    1e-3 without two different times.
-    """
+    """Usual time between rows [s], from times in s: without gaps, rounding of the times and jitter;
+    1e-3 without two different times."""
     steps = np.diff(times[np.isfinite(times)])
     steps = steps[steps > 0]
     if not len(steps):
@@ -232,10 +228,8 @@ _LONGEST_GAP = 10  # rows: the motion of a joint can be interpolated over such a
 
 
 def lost_rows(times: Array, T: float) -> float | None:
-    """Longest of the short gaps between rows [s], if single rows are lost throughout; else None.
-
-    T  usual time between rows [s]
-    """
+    """Longest of the short gaps between rows, usually T apart [s], if single rows are lost
+    throughout; else None."""
     steps = np.diff(times[np.isfinite(times)])
     short = steps[(steps > _MISSING * T) & (steps < (_LONGEST_GAP + 0.5) * T)]
     if not len(short) > _LOST * len(steps):

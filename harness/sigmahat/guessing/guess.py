@@ -70,8 +70,13 @@ def guess(columns: Columns) -> dict[str, JointGuess]:
 
     A joint lacks a port if no column of the log looks like this port.
     """
-    found = joints_of_log(columns.signals, columns.window_T)
-    return {name: _joint(name, roles, columns) for name, roles in found.items()}
+    found = {}
+    for name, roles in joints_of_log(columns.signals, columns.window_T).items():
+        clocks = [role.column.clock for role in roles.ports.values()]
+        main = clocks[0] if clocks else next(iter(columns.clocks))
+        ports = guess_ports(roles, columns, main)
+        found[name] = JointGuess(name, main, columns.clocks[main], ports)
+    return found
 
 
 def one_joint(log: Log, joints: Mapping[str, JointGuess], name: str) -> JointGuess:
@@ -96,9 +101,3 @@ def guess_chosen(columns: Columns, names: Mapping[str, str | None]) -> dict[str,
     roles = chosen_roles(chosen, columns.window_T)
     clocks = [column.clock for column in chosen.values()]
     return guess_ports(roles, columns, next(iter(clocks), None))
-
-
-def _joint(name: str, roles: Roles, columns: Columns) -> JointGuess:
-    clocks = [role.column.clock for role in roles.ports.values()]
-    main = clocks[0] if clocks else next(iter(columns.clocks))
-    return JointGuess(name, main, columns.clocks[main], guess_ports(roles, columns, main))

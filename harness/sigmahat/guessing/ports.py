@@ -165,10 +165,7 @@ def _is_vague(port: PortGuess) -> bool:
 
 
 def _unit_by_other(port: PortGuess, other: PortGuess, slope: float) -> PortGuess:
-    """The unit of a vague position, from the other position, which moves with it.
-
-    slope  ratio of the values of the vague position to the values of the other position
-    """
+    """The unit of a vague position, whose values are slope times those of the other position."""
     if other.unit not in TURN:
         return port
     same = [unit for unit in TURN if abs(slope * TURN[other.unit] / TURN[unit] - 1) < _AS_FAR]

@@ -58,10 +58,8 @@ whose keys replace common keys: move a key there if a joint differs."""
 
 
 def write(log: Log, columns: Columns, joints: Mapping[str, JointGuess]) -> str:
-    """The text of a configuration of these joints; values that all joints have are written once.
-
-    If no column looks like a port, the text asks for a column.
-    """
+    """The text of a configuration of these joints; values that all joints have are written once,
+    and where no column looks like a port, it asks for a column."""
     lines = "\n".join(_listed(log, columns, joints))
     name = "" if len(joints) > 1 else next(iter(joints.values())).name
     head = _HEAD.format(log=log.path.name, joint=name and f", joint {name}", columns=lines)

@@ -10,18 +10,9 @@ import math
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
+from sigmahat.identification import regression
 from sigmahat.identification.noise import TorqueNoise
-from sigmahat.identification.regression import (
-    MOTOR,
-    Equations,
-    Form,
-    Signals,
-    equations,
-    eta,
-    factor,
-    fit,
-    rows,
-)
+from sigmahat.identification.regression import MOTOR, Equations, Form, Signals
 from sigmahat.logs.log import Array
 
 _FIRST = 5.0  # [Hz] low pass of the fit that the spectra are computed from
@@ -44,12 +35,12 @@ def coherent_range(piece: Signals, gamma: float, noise: TorqueNoise) -> float:
     if highest <= _LOWEST or len(piece.theta) * T < 2 * _SEGMENT:
         return math.inf
     low = Form(min(_FIRST, highest), min(_FIRST, highest))
-    system = equations([piece], T, gamma, low)
-    found = fit(system)
+    system = regression.equations([piece], T, gamma, low)
+    found = regression.fit(system)
     p, motor = np.array(list(found.value.values())), slice(len(MOTOR))
     rest = slice(len(MOTOR), None)
     torques, springs = [], []
-    for even in rows(piece, T, gamma, Form(highest, highest), system.units):
+    for even in regression.rows(piece, T, gamma, Form(highest, highest), system.units):
         torques.append(even.y[0] - even.X[0][:, motor] @ p[motor])
         springs.append(even.X[0][:, rest] @ p[rest])
     torque, spring = np.concatenate(torques), np.concatenate(springs)
@@ -105,9 +96,9 @@ def is_hidden(system: Equations, f_0: float, T: float, noise: float, known: bool
     noise   variance of the rounding of the deformation [rad2]
     known   whether the inertia is known
     """
-    names = [*MOTOR[int(known) :], *eta(2, 1)]  # the spring is a constant and a slope
+    names = [*MOTOR[int(known) :], *regression.eta(2, 1)]  # the spring is a constant and a slope
     own = system.only(names)
-    R = factor(own.R.reshape(-1, own.R.shape[2]))
+    R = regression.factor(own.R.reshape(-1, own.R.shape[2]))
     others, spring = R[:, :-2], R[:, -2]  # the last one is y
     left = spring - others @ np.linalg.lstsq(others, spring, rcond=None)[0]
     variance = float(left @ left) / int(system.rows.sum()) * system.units[0] ** 2

@@ -4,8 +4,6 @@ B, D_theta and Coulomb friction with 95 % intervals, the torque constant if ther
 sensor, the noise of the signals, a bandwidth and V_a for the filters, and the polynomial orders.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -116,8 +114,10 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
     no_torque = all(is_only_noise(piece.tau) for piece in pieces)
     changed = None if change is None else change * h
     if no_torque or hidden:
-        for name, each in quantities.items():
-            quantities[name] = Quantity(math.nan, math.inf, each.unit, determined=False)
+        quantities = {
+            name: Quantity(math.nan, math.inf, each.unit, determined=False)
+            for name, each in quantities.items()
+        }
     if quantities["B"].determined:  # until here it was that of the configuration
         bandwidth = replace(noise, inertia=quantities["B"].value * abs(gamma)).bandwidth
     if torque_constant and (nominal := configuration.ports["tau"].torque_constant) is not None:
@@ -192,10 +192,7 @@ def _apart(pieces: Sequence[Signals], count: float) -> int:
 
 
 def _known_inertia(every: Mapping[str, Value], configuration: Configuration) -> KnownInertia | None:
-    """B of the configuration, if somebody has said how certain it is.
-
-    A wide prior says that nobody knows: it is of `init`, or of an earlier run.
-    """
+    """B of the configuration, unless its prior is the wide one of `init` or of an earlier run."""
     std = float(every["prior.B"])
     given = "motor.B" in configuration.parameters
     return KnownInertia(float(every["motor.B"]), std) if given and 0 < std < WIDE else None

@@ -6,23 +6,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from sigmahat.identification import regression
 from sigmahat.identification.quantities import Quantity
-from sigmahat.identification.regression import (
-    COULOMB_VELOCITY,
-    MOTOR,
-    WIDEST,
-    Fit,
-    Form,
-    Signals,
-    Stribeck,
-    choose,
-    equations,
-    fit,
-    is_more,
-    is_worse,
-    units,
-)
+from sigmahat.identification.regression import MOTOR, Fit, Form, Signals, Stribeck
 from sigmahat.identification.spring import Spring
+from sigmahat.logs.log import Array
 
 _UNITS = {"B": "kg.m2", "D_theta": "N.m.s/rad", "tau_coulomb": "N.m"}
 _RELATIVE = 0.1  # largest half width of a determined value, over the value
@@ -94,7 +82,7 @@ def fit_motor(
     """
     longest = max(pieces, key=lambda piece: len(piece.theta))
     m_most = _M if np.ptp(longest.set_point) > 0 else 1
-    form = Form(f_0, min(2.5 * f_0, WIDEST / T), n=_N, m=m_most)
+    form = Form(f_0, min(2.5 * f_0, regression.WIDEST / T), n=_N, m=m_most)
     without_sensor = [replace(piece, tau_e=None) for piece in pieces]
     form, polynomial = _with_spring(without_sensor, T, gamma, form, symmetric)
     torque = float(np.std(np.concatenate([piece.tau for piece in pieces])))
@@ -106,12 +94,11 @@ def fit_motor(
     if with_inertia is not None and not quantities["B"].determined:
         fits = with_inertia
         quantities |= {name: _motor_quantity(name, fits, torque) for name in MOTOR[1:]}
-    spring = Spring(form, units(pieces))
+    spring = Spring(form, fits.first, pieces)
     if "gain" not in fits.first.value:
-        quantities["zero"] = _zero(spring, fits, pieces, gamma)
+        quantities["zero"] = _zero(spring, fits.others, gamma)
     gain = fits.first.value.get("gain", math.nan), _half_width("gain", fits)
-    largest = spring.largest(fits.first, pieces, abs(gamma))
-    return MotorFit(quantities, gain, contradicted, polynomial, largest)
+    return MotorFit(quantities, gain, contradicted, polynomial, spring.largest(abs(gamma)))
 
 
 def _with_spring(
@@ -125,16 +112,16 @@ def _with_spring(
     The second form is the one for the estimator. It has _POWERS powers, of which a log may show
     little: with fewer, the interval would not contain what the log does not show.
     """
-    orders, errors = choose(equations(pieces, T, gamma, form), form.n, form.m)
-    best = replace(form, n=orders[0], m=orders[1])
+
+    def chosen(form: Form) -> tuple[Form, Array]:
+        return regression.choose(regression.equations(pieces, T, gamma, form), form)
+
+    odd, errors = chosen(form)
     if symmetric:
-        return best, replace(best, n=_POWERS)
-    form = replace(form, n=2 * form.n, symmetric=False)
-    all_orders, all_errors = choose(equations(pieces, T, gamma, form), form.n, form.m)
-    if is_more(np.log(errors[orders] / all_errors[all_orders])):
-        orders, errors = all_orders, all_errors
-        best = replace(form, n=orders[0], m=orders[1])
-    return best, replace(form, n=_POWERS, m=orders[1])
+        return odd, replace(odd, n=_POWERS)
+    every, errors_of_all = chosen(form.with_all_powers())
+    best = every if regression.is_more(np.log(errors / errors_of_all)) else odd
+    return best, replace(every, n=_POWERS, m=best.m)
 
 
 @dataclass(frozen=True)
@@ -154,8 +141,8 @@ def _frictions(plain: Form) -> list[Form]:
     """All other forms of friction than that of the plain equation."""
     load = replace(plain, load_friction=True)
     return [
-        replace(plain, coulomb_velocity=COULOMB_VELOCITY / 4),
-        replace(plain, coulomb_velocity=COULOMB_VELOCITY * 2),
+        replace(plain, coulomb_velocity=regression.COULOMB_VELOCITY / 4),
+        replace(plain, coulomb_velocity=regression.COULOMB_VELOCITY * 2),
         load,
         *(replace(each, stribeck=(one,)) for each in (plain, load) for one in _STRIBECK),
     ]
@@ -176,23 +163,23 @@ def _variants(
     """
     sensor = pieces[0].tau_e is not None
     widest = _with_all_columns(form)
-    whole, names = equations(pieces, T, gamma, widest), set(widest.names(sensor))
+    whole, names = regression.equations(pieces, T, gamma, widest), set(widest.names(sensor))
 
     def fits_of(each: Form) -> list[Fit]:
         """With B as unknown, then as known and at both ends of its interval."""
         if _with_all_columns(each) == widest:  # neither a filter nor v_s differs
             system = whole.without(names.difference(each.names(sensor)))
         else:
-            system = equations(pieces, T, gamma, each)
+            system = regression.equations(pieces, T, gamma, each)
         ends = [] if inertia is None else [inertia.value * (1 + k * inertia.std) for k in _ENDS]
-        return [fit(system), *(fit(system.known("B", B)) for B in ends)]
+        return [regression.fit(each) for each in (system, *(system.known("B", B) for B in ends))]
 
     plain = replace(form, delay=True)
     every = {each: fits_of(each) for each in (plain, *_frictions(plain))}
     best = min(every, key=lambda each: np.nan_to_num(every[each][0].error, nan=np.inf))
-    chosen = best if is_worse(every[plain][0], every[best][0]) else plain
+    chosen = best if regression.is_worse(every[plain][0], every[best][0]) else plain
     filters = [
-        fits_of(replace(chosen, wide=min(2 * form.wide, 2 * WIDEST / T))),
+        fits_of(replace(chosen, wide=min(2 * form.wide, 2 * regression.WIDEST / T))),
         fits_of(replace(chosen, f_0=0.6 * form.f_0)),
     ]
     first = every.pop(chosen)
@@ -217,7 +204,7 @@ def _half_width(name: str, fits: Variants) -> float:
     distances = [abs(other.value[name] - first.value[name]) for other in fits.others]
     for friction in fits.frictions:
         distance = abs(friction.value[name] - first.value[name]) - friction.half_width[name]
-        if not is_worse(friction, first):
+        if not regression.is_worse(friction, first):
             distances.append(max(distance, 0.0))
     distance = max(distances)
     return first.half_width[name] + (distance if math.isfinite(distance) else math.inf)
@@ -236,18 +223,16 @@ def _quantity(value: float, half_width: float, unit: str, negligible: float) -> 
     return Quantity(value, half_width, unit, bool(determined))
 
 
-def _zero(spring: Spring, fits: Variants, pieces: Sequence[Signals], gamma: float) -> Quantity:
+def _zero(spring: Spring, fits: Sequence[Fit], gamma: float) -> Quantity:
     """The deformation at which spring and constant torque cancel.
 
     It is determined if its interval is short compared with the covered deformation, and if the
     stiffness is positive: else a sign or a gear ratio is wrong, and the zero means nothing.
     """
-    value = spring.zero(fits.first, pieces)
-    others = [spring.zero(each, pieces) for each in fits.others]
+    value, *others = (replace(spring, fit=each).zero() for each in (spring.fit, *fits))
     if not all(map(math.isfinite, [value, *others])):
         return Quantity(math.nan, math.inf, "rad", False)
-    half_width = spring.half_width(fits.first, value, pieces)
-    half_width += max(abs(other - value) for other in others)
-    covered = max(float(np.max(p.phi)) for p in pieces) - min(float(np.min(p.phi)) for p in pieces)
-    is_stiff = spring.slope(fits.first, value, pieces) * gamma < 0
-    return Quantity(value, half_width, "rad", bool(is_stiff and half_width < _OF_COVERED * covered))
+    half_width = spring.half_width(value) + max(abs(other - value) for other in others)
+    is_stiff = spring.slope(value) * gamma < 0
+    is_narrow = half_width < _OF_COVERED * spring.covered
+    return Quantity(value, half_width, "rad", bool(is_stiff and is_narrow))

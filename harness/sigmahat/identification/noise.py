@@ -75,8 +75,7 @@ class TorqueNoise:
     def density(self, f: Array) -> Array:
         """Power spectral density, one-sided [(N.m)2/Hz], at the frequencies f [Hz]."""
         by_position = (self.inertia * (2 * math.pi * f) ** 2) ** 2 * self.position
-        density: Array = 2 * self.T * (self.torque + by_position)
-        return density
+        return 2 * self.T * (self.torque + by_position)
 
 
 def low_pass(values: Array, frequency: float, h: float) -> Array:
@@ -96,5 +95,4 @@ def low_pass(values: Array, frequency: float, h: float) -> Array:
     spectrum = np.fft.rfft(padded, size, axis=0)
     relative = np.tan(np.pi * np.fft.rfftfreq(size)) / math.tan(math.pi * frequency * h)
     spectrum /= (1 + relative**4).reshape(-1, *[1] * (values.ndim - 1))
-    filtered: Array = np.fft.irfft(spectrum, size, axis=0)[settled : settled + len(values)]
-    return filtered
+    return np.fft.irfft(spectrum, size, axis=0)[settled : settled + len(values)]

@@ -1,7 +1,5 @@
 """The result of an identification: its numbers, as text for people, and as values for JSON."""
 
-from __future__ import annotations
-
 import math
 import warnings
 from collections.abc import Mapping, Sequence

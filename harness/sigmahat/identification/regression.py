@@ -90,6 +90,10 @@ class Form:
     stribeck: tuple[Stribeck, ...] = ()  # additional friction in slow motion
     delay: bool = False  # whether the torque may be late: tau(t - delay) = tau(t) - delay tau'(t)
 
+    def with_all_powers(self) -> Form:
+        """The form with even powers of the deformation as well, up to about the same power."""
+        return replace(self, n=2 * self.n, symmetric=False)
+
     def names(self, sensor: bool) -> list[str]:
         """Names of the columns. With a torque sensor the polynomial is replaced by a gain."""
         has_constant = sensor or self.symmetric  # else it is a coefficient of the polynomial
@@ -364,15 +368,13 @@ def set_point_moves(pieces: Sequence[Signals]) -> bool:
 def _first(x: Array, h: float) -> Array:
     """First derivative, of fourth order in h; the two values at each end are not valid."""
     r = np.roll
-    d: Array = (r(x, 2) - 8 * r(x, 1) + 8 * r(x, -1) - r(x, -2)) / (12 * h)
-    return d
+    return (r(x, 2) - 8 * r(x, 1) + 8 * r(x, -1) - r(x, -2)) / (12 * h)
 
 
 def _second(x: Array, h: float) -> Array:
     """Second derivative, as _first."""
     r = np.roll
-    d: Array = (-r(x, 2) + 16 * r(x, 1) - 30 * x + 16 * r(x, -1) - r(x, -2)) / (12 * h**2)
-    return d
+    return (-r(x, 2) + 16 * r(x, 1) - 30 * x + 16 * r(x, -1) - r(x, -2)) / (12 * h**2)
 
 
 @dataclass(frozen=True)
@@ -451,21 +453,16 @@ def left_out(e: Equations) -> Array:
     return np.array([e.errors(p)[i] / e.rows[i] for i, p in enumerate(fits)])
 
 
-Orders = tuple[int, int]  # n and m of (16), as in rls.n and rls.m
-
-
-def choose(equations: Equations, n_most: int, m_most: int) -> tuple[Orders, dict[Orders, Array]]:
-    """The orders with the least error on eighths of the log that were left out, and the errors of
-    all, see left_out.
-
-    equations  with all columns up to the orders n_most, m_most
+def choose(system: Equations, form: Form) -> tuple[Form, Array]:
+    """The form with the orders, up to its own, that have the least error on eighths of the log that
+    were left out, and these errors, see left_out; system has the equations of the form.
     """
-    others = [name for name in equations.names if name not in eta(n_most, m_most)]
-    equations = equations.in_parts(_PARTS)
+    system = system.in_parts(_PARTS)
+    others = [name for name in system.names if name not in eta(form.n, form.m)]
     errors = {
-        (n, m): left_out(equations.only([*others, *eta(n, m)]))
-        for n in range(1, n_most + 1)
-        for m in range(1, m_most + 1)
+        (n, m): left_out(system.only([*others, *eta(n, m)]))
+        for n in range(1, form.n + 1)
+        for m in range(1, form.m + 1)
     }
-    best = min(errors, key=lambda each: float(np.mean(errors[each])))
-    return best, errors
+    n, m = min(errors, key=lambda each: float(np.mean(errors[each])))
+    return replace(form, n=n, m=m), errors[n, m]

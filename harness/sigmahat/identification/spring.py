@@ -7,26 +7,13 @@ changes at once at some deformations, as in harmonic drives.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import combinations
 
 import numpy as np
 
-from sigmahat.identification.regression import (
-    CONSTANT,
-    WIDEST,
-    Equations,
-    Fit,
-    Form,
-    Signals,
-    equations,
-    eta,
-    extra,
-    factor,
-    fit,
-    is_worse,
-    set_point_moves,
-    units,
-)
+from sigmahat.identification import regression
+from sigmahat.identification.regression import CONSTANT, WIDEST, Equations, Fit, Form, Signals
 from sigmahat.joint.sheet import powers_of_phi
 from sigmahat.logs.log import Array
 
@@ -35,67 +22,75 @@ _USUAL = (0.005, 0.995)  # quantiles of the deformation, between which the polyn
 
 @dataclass(frozen=True)
 class Spring:
-    """Torque of the motor that balances the spring, as a polynomial of the fitted equations."""
+    """Torque of the motor that balances the spring, as the polynomial in a fit to some pieces."""
 
     form: Form
-    units: tuple[float, float]  # as in Equations
+    fit: Fit
+    pieces: Sequence[Signals]
 
-    def zero(self, fit: Fit, pieces: Sequence[Signals]) -> float:
+    @cached_property
+    def units(self) -> tuple[float, float]:
+        """As in Equations."""
+        return regression.units(self.pieces)
+
+    @property
+    def covered(self) -> float:
+        """Range of the deformation in the pieces [rad]."""
+        ends = [(float(np.min(each.phi)), float(np.max(each.phi))) for each in self.pieces]
+        return max(high for _, high in ends) - min(low for low, _ in ends)
+
+    def zero(self) -> float:
         """Deformation at which spring and constant torque cancel [rad]; nan if there is none.
 
         It is the one nearest to the middle of the covered deformation, at the mean set-point.
         """
         polynomial = np.zeros(self._exponents[-1] + 1)
-        polynomial[self._exponents] = self._at(_mean_set_point(pieces), fit)
-        polynomial[0] += fit.value.get(CONSTANT, 0.0)
+        polynomial[self._exponents] = self._coefficients
+        polynomial[0] += self.fit.value.get(CONSTANT, 0.0)
         if not np.all(np.isfinite(polynomial)):
             return math.nan
         roots = np.polynomial.polynomial.polyroots(np.trim_zeros(polynomial, "b"))
         real = np.real(roots[np.abs(np.imag(roots)) < 1e-9])
         if not len(real):
             return math.nan
-        middle = np.mean([np.mean(piece.phi) for piece in pieces]) / self.units[0]
+        middle = np.mean([np.mean(piece.phi) for piece in self.pieces]) / self.units[0]
         return float(real[np.argmin(np.abs(real - middle))]) * self.units[0]
 
-    def half_width(self, fit: Fit, zero: float, pieces: Sequence[Signals]) -> float:
+    def half_width(self, zero: float) -> float:
         """Half of the 95 % interval of the zero [rad], to first order in the coefficients."""
-        set_point, x = _mean_set_point(pieces), zero / self.units[0]
-        by_eta = np.outer(x**self._exponents, self._of_set_point(set_point)).ravel()
-        names = list(fit.value)
+        x = zero / self.units[0]
+        by_eta = np.outer(x**self._exponents, self._of_set_point(self._set_point)).ravel()
+        names = list(self.fit.value)
         gradient = np.zeros(len(names))
         gradient[-len(by_eta) :] = by_eta
         if CONSTANT in names:
             gradient[names.index(CONSTANT)] = 1.0
-        slope = self.slope(fit, zero, pieces)
+        slope = self.slope(zero)
         if not abs(slope) > 0:
             return math.inf
-        variance = float(gradient @ fit.covariance @ gradient)
-        return fit.quantile * math.sqrt(variance) / abs(slope)
+        variance = float(gradient @ self.fit.covariance @ gradient)
+        return self.fit.quantile * math.sqrt(variance) / abs(slope)
 
-    def slope(self, fit: Fit, phi: float, pieces: Sequence[Signals]) -> float:
-        """Slope of the motor torque over the deformation [N.m/rad], at the mean set-point.
-
-        It is the stiffness over the gear ratio, with the other sign.
-        """
+    def slope(self, phi: float) -> float:
+        """Slope of the motor torque over the deformation at the mean set-point [N.m/rad]: the
+        stiffness over the gear ratio, with the other sign."""
         e, x = self._exponents, phi / self.units[0]
-        coefficients = self._at(_mean_set_point(pieces), fit)
-        return float(np.sum(e * x ** np.maximum(e - 1, 0) * coefficients)) / self.units[0]
+        return float(np.sum(e * x ** np.maximum(e - 1, 0) * self._coefficients)) / self.units[0]
 
-    def largest(self, fit: Fit, pieces: Sequence[Signals], gamma: float) -> float:
+    def largest(self, gamma: float) -> float:
         """Largest torque of the spring in the log, behind the gear [N.m]; nan if not known.
 
         A rare deformation, such as a blow, may be beyond what the polynomial was fitted to. There
         the torque is taken as proportional to the deformation.
         """
-        if "gain" in fit.value:
+        if "gain" in self.fit.value:
             return math.nan
-        eta, constant = self._eta(fit), fit.value.get(CONSTANT, 0.0)
         largest = 0.0
-        for piece in pieces:
+        for piece in self.pieces:
             usual = np.clip(piece.phi, *np.quantile(piece.phi, _USUAL))
             x = (usual / self.units[0])[:, None] ** self._exponents
             y = self._of_set_point(piece.set_point)
-            torque = np.sum((x @ eta) * y, axis=1) + constant
+            torque = np.sum((x @ self._eta) * y, axis=1) + self.fit.value.get(CONSTANT, 0.0)
             most = float(np.max(np.abs(usual)))
             beyond = float(np.max(np.abs(piece.phi))) / most if most > 0 else 1.0
             largest = max(largest, beyond * gamma * float(np.max(np.abs(torque))))
@@ -105,24 +100,24 @@ class Spring:
     def _exponents(self) -> Array:
         return np.array(powers_of_phi(self.form.symmetric, self.form.n))
 
+    @cached_property
+    def _set_point(self) -> float:
+        return float(np.mean(np.concatenate([piece.set_point for piece in self.pieces])))
+
     def _of_set_point(self, set_point: Array | float) -> Array:
         """Powers of the set-point, the last axis of size m."""
-        y: Array = (np.asarray(set_point) / self.units[1])[..., None] ** np.arange(self.form.m)
-        return y
+        return (np.asarray(set_point) / self.units[1])[..., None] ** np.arange(self.form.m)
 
-    def _eta(self, fit: Fit) -> Array:
+    @property
+    def _eta(self) -> Array:
         """[size: n, m]"""
         n, m = self.form.n, self.form.m
-        return np.array([[fit.value[f"eta[{i},{j}]"] for j in range(m)] for i in range(n)])
+        return np.array([[self.fit.value[f"eta[{i},{j}]"] for j in range(m)] for i in range(n)])
 
-    def _at(self, set_point: float, fit: Fit) -> Array:
-        """Coefficients of the powers of the deformation at a set-point, [size: n]."""
-        coefficients: Array = self._eta(fit) @ self._of_set_point(set_point)
-        return coefficients
-
-
-def _mean_set_point(pieces: Sequence[Signals]) -> float:
-    return float(np.mean(np.concatenate([piece.set_point for piece in pieces])))
+    @property
+    def _coefficients(self) -> Array:
+        """Of the powers of the deformation at the mean set-point, [size: n]."""
+        return self._eta @ self._of_set_point(self._set_point)
 
 
 _PLACES = 16  # steps in which the time is looked for, then in smaller ones around the best
@@ -135,7 +130,7 @@ _ORDER = 4  # powers of the torque of each of the two springs
 def plain_equations(pieces: Sequence[Signals], T: float, gamma: float, f_0: float) -> Equations:
     """The equations of one spring with even and odd powers, no set-point; others as fit_motor()."""
     form = Form(f_0, min(2.5 * f_0, WIDEST / T), n=_ORDER, symmetric=False)
-    return equations(pieces, T, gamma, form)
+    return regression.equations(pieces, T, gamma, form)
 
 
 def change_of_spring(system: Equations, pieces: Sequence[Signals]) -> int | None:
@@ -144,15 +139,17 @@ def change_of_spring(system: Equations, pieces: Sequence[Signals]) -> int | None
 
     Samples are counted over all pieces, of which these are the plain equations.
     """
-    if set_point_moves(pieces):
+    if regression.set_point_moves(pieces):
         return None
     scale = system.scale
     R = system.R / np.append(np.where(scale > 0, scale, 1.0), 1.0)
-    spring = [system.names.index(name) for name in eta(_ORDER, 1)]
+    spring = [system.names.index(name) for name in regression.eta(_ORDER, 1)]
 
     def error(place: int) -> float:
         """Sum of the squared errors with another spring from this block on."""
-        before, later = (factor(each.reshape(-1, R.shape[2])) for each in (R[:place], R[place:]))
+        before, later = (
+            regression.factor(each.reshape(-1, R.shape[2])) for each in (R[:place], R[place:])
+        )
         one, other = np.concatenate([before, later]), np.concatenate([0 * before, later])
         both, y = np.column_stack([one[:, :-1], other[:, spring]]), one[:, -1]
         left = y - both @ np.linalg.lstsq(both, y, rcond=1e-10)[0]
@@ -171,7 +168,7 @@ def change_of_spring(system: Equations, pieces: Sequence[Signals]) -> int | None
 
 def with_two_springs(pieces: Sequence[Signals], first: int) -> list[Signals]:
     """Pieces with regressors for what the spring has in addition from this sample on."""
-    unit, begin, found = units(pieces)[0], 0, []
+    unit, begin, found = regression.units(pieces)[0], 0, []
     for piece in pieces:
         later = np.arange(begin, begin + len(piece.phi)) >= first
         powers: Array = np.vander(piece.phi / unit, _ORDER, increasing=True)
@@ -211,7 +208,7 @@ def knees(
         places, phis = shares * usual, [piece.phi[:, None] - zero for piece in used]
         columns = [each - np.clip(each, -places, places) for each in phis]
         with_knees = [replace(p, extra=each) for p, each in zip(used, columns, strict=True)]
-        return equations(with_knees, T, gamma, form)
+        return regression.equations(with_knees, T, gamma, form)
 
     coarse = beyond(_SHARES)
     best, found = _least(coarse, _SHARES, 0)
@@ -219,7 +216,9 @@ def knees(
         near, _ = _least(coarse, _SHARES, number)
         shares = np.unique(np.add.outer(near, _FINER))
         better, other = _least(beyond(shares), shares, number)
-        if not is_worse(found, other) or _is_one_knee(other):
+        changes = [abs(x) for name, x in other.value.items() if name.startswith("extra")]
+        # The smaller one of two changes may only correct the place of the other.
+        if not regression.is_worse(found, other) or min(changes) < _LEAST_CHANGE * max(changes):
             break
         best, found = better, other
     return tuple((best * usual).tolist())
@@ -230,7 +229,7 @@ def _least(e: Equations, shares: Array, number: int) -> tuple[Array, Fit]:
     own = e.names[: len(e.names) - len(shares)]
 
     def fitted(chosen: Sequence[int]) -> tuple[Array, Fit]:
-        return shares[list(chosen)], fit(e.only([*own, *map(extra, chosen)]))
+        return shares[list(chosen)], regression.fit(e.only([*own, *map(regression.extra, chosen)]))
 
     def error(each: tuple[Array, Fit]) -> float:
         return float(np.nan_to_num(each[1].error, nan=math.inf))
@@ -240,17 +239,9 @@ def _least(e: Equations, shares: Array, number: int) -> tuple[Array, Fit]:
     return min(map(fitted, apart), key=error)
 
 
-def _is_one_knee(found: Fit) -> bool:
-    """Whether the smaller one of two changes of the slope only corrects the place of the other."""
-    changes = [abs(value) for name, value in found.value.items() if name.startswith("extra")]
-    return min(changes) < _LEAST_CHANGE * max(changes)
-
-
 def _first(pieces: Sequence[Signals]) -> list[Signals]:
-    """The first pieces without a sensor, up to a number of samples: more show the place no better.
-
-    With the torque of a sensor, the equation has no polynomial.
-    """
+    """The first pieces, up to a number of samples: more show the place no better. They are without
+    a sensor, with whose torque the equation has no polynomial."""
     used, left = [], _MOST
     for piece in pieces:
         if left > 0:

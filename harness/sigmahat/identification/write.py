@@ -10,7 +10,7 @@ from tomlkit.items import Item
 
 from sigmahat.files import toml_file
 from sigmahat.fmi.instance import installed
-from sigmahat.identification.quantities import WIDE, Identified, Quantity
+from sigmahat.identification.quantities import WIDE, Identified
 from sigmahat.identification.regression import MOTOR
 from sigmahat.logs import joints
 from sigmahat.logs.configuration import (
@@ -107,21 +107,17 @@ def update(document: tomlkit.TOMLDocument, found: Identified, joint: str = "") -
 
 
 def _unknown(found: Identified) -> dict[str, tuple[float, str]]:
-    """Values of the motor data that are not determined, with a comment, by parameter."""
+    """Values of the motor data that are not determined, with a comment, by parameter: the middle of
+    the positive part of the interval, if there is one."""
     values = {}
     for name, own in (("B", found.B), ("D_theta", found.D_theta)):
         quantity = found.quantities.get(name)
         if quantity is not None and not quantity.determined:
-            middle = _middle(quantity)
-            comment = NOT_YOURS if middle is None else _MIDDLE
-            values[f"motor.{name}"] = (own if middle is None else middle, comment)
+            low, high = quantity.interval
+            is_held = math.isfinite(high) and high > 0
+            value = 0.5 * (max(low, 0.0) + high) if is_held else own
+            values[f"motor.{name}"] = (value, _MIDDLE if is_held else NOT_YOURS)
     return values
-
-
-def _middle(quantity: Quantity) -> float | None:
-    """Middle of the positive part of an interval; None if there is none."""
-    low, high = quantity.interval
-    return 0.5 * (max(low, 0.0) + high) if math.isfinite(high) and high > 0 else None
 
 
 def _wide_priors(found: Identified, comments: Mapping[str, str]) -> dict[str, float]:

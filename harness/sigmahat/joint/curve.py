@@ -3,8 +3,6 @@
 `logs/curve.py` computes it. `estimate.curve.csv` is its table, which this module writes and reads.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -72,20 +70,16 @@ def _interval(value: Array, std: Array | None) -> tuple[Array, Array] | None:
 
 
 def characteristic(reach: Range) -> tuple[float, float, float]:
-    """Deformations at which the stiffness is printed [rad]: the middle, and half way to either end.
-
-    The middle is 0 if the range contains 0.
-    """
+    """Deformations at which the stiffness is printed [rad]: the middle, which is 0 if the range
+    contains 0, and half way to either end."""
     low, high = reach
     middle = 0.0 if low <= 0 <= high else (low + high) / 2
     return (low + middle) / 2, middle, (high + middle) / 2
 
 
 def nearest(settings: Sequence[float], set_points: Array) -> NDArray[np.intp]:
-    """Index of the setting that each point belongs to; -1 if the point is far from all settings.
-
-    settings  in increasing order
-    """
+    """Index of the setting, of those in increasing order, that each point belongs to; -1 if the
+    point is far from all settings."""
     if len(settings) == 1:
         return np.zeros(len(set_points), np.intp)
     levels = np.asarray(settings, np.float64)
@@ -114,24 +108,18 @@ _UNITS = {
 
 def write_curve(curve: Curve, path: Path) -> None:
     """Writes a row for each point, numbers with all digits; missing intervals are empty fields."""
-    rows = (row for branch in curve.branches for row in _rows(branch))
+    rows: list[tuple[object, ...]] = []
+    for branch in curve.branches:
+        columns = (
+            np.full_like(branch.phi, branch.set_point),
+            branch.phi,
+            *(branch.tau_e, branch.tau_e_std, *(branch.torque_interval() or (None, None))),
+            *(branch.sigma, branch.sigma_std, *(branch.stiffness_interval() or (None, None))),
+            np.where(branch.within, "true", "false"),
+        )
+        empty = [None] * len(branch.phi)
+        rows += zip(*(empty if x is None else x.tolist() for x in columns), strict=True)
     write_csv(path, [title(name, unit) for name, unit in _UNITS.items()], rows)
-
-
-def _rows(branch: Branch) -> Iterator[tuple[object, ...]]:
-    columns = (
-        np.full_like(branch.phi, branch.set_point),
-        branch.phi,
-        branch.tau_e,
-        branch.tau_e_std,
-        *(branch.torque_interval() or (None, None)),
-        branch.sigma,
-        branch.sigma_std,
-        *(branch.stiffness_interval() or (None, None)),
-    )
-    empty = [None] * len(branch.phi)
-    cells = (empty if column is None else column.tolist() for column in columns)
-    yield from zip(*cells, ("true" if each else "false" for each in branch.within), strict=True)
 
 
 def read_curve(path: Path, polynomial: Polynomial) -> Curve:
@@ -152,32 +140,20 @@ def read_curve(path: Path, polynomial: Polynomial) -> Curve:
     columns = numeric_columns(table.drop_columns(empty))
     if missing := set(_UNITS) - set(columns) - {name.partition(" [")[0] for name in empty}:
         raise ValueError(f"{path}: no numbers in column {min(missing)!r}; {again}")
-    settings = np.unique(columns["setPoint"])
-    return Curve(polynomial, [_branch(columns, columns["setPoint"] == each) for each in settings])
-
-
-def _branch(columns: dict[str, Array], rows: Array) -> Branch:
-    own = {name: values[rows] for name, values in columns.items()}
-    within = own["phi"][own["in the data"] == 1]
-    return Branch(
-        set_point=float(own["setPoint"][0]),
-        reach=(float(within.min()), float(within.max())),
-        phi=own["phi"],
-        tau_e=own["tau_e"],
-        tau_e_std=own.get("tau_e_std"),
-        sigma=own["sigma"],
-        sigma_std=own.get("sigma_std"),
-    )
+    branches = []
+    for setting in np.unique(columns["setPoint"]):
+        own = {name: x[columns["setPoint"] == setting] for name, x in columns.items()}
+        within = own["phi"][own["in the data"] == 1]
+        reach = float(within.min()), float(within.max())
+        torque, stiffness = ((own[x], own.get(f"{x}_std")) for x in ("tau_e", "sigma"))
+        branches.append(Branch(float(setting), reach, own["phi"], *torque, *stiffness))
+    return Curve(polynomial, branches)
 
 
 _STIFFNESS_HEAD = ("phi [rad]", "sigma [N.m/rad]", "95 % interval")
 _FAMILY_HEAD = (
-    "setPoint",
-    "phi from [rad]",
-    "to [rad]",
-    "sigma half way down",
-    "in the middle [N.m/rad]",
-    "half way up",
+    *("setPoint", "phi from [rad]", "to [rad]"),
+    *("sigma half way down", "in the middle [N.m/rad]", "half way up"),
 )
 _MOST_SETTINGS = 5  # largest number of set-points in a headline
 
@@ -289,8 +265,11 @@ def stiffness_table(curve: Curve) -> Iterator[tuple[str, ...]]:
     several = len(curve.branches) > 1
     yield _FAMILY_HEAD if several else _STIFFNESS_HEAD
     for branch in curve.branches:
-        points = characteristic(branch.reach)
-        rows: list[tuple[str, ...]] = [(f"{phi:.4g}", *_stiffness(branch, phi)) for phi in points]
+        rows: list[tuple[str, ...]] = []
+        for phi in characteristic(branch.reach):
+            sigma, ends = _at(branch, phi)
+            interval = f"{ends[0]:.4g} to {ends[1]:.4g}" if ends else "not claimed"
+            rows.append((f"{phi:.4g}", f"{sigma:.4g}", interval))
         if several:
             reach = (f"{end:.4g}" for end in branch.reach)
             stiffness = (f"{sigma} ({interval})" for _, sigma, interval in rows)
@@ -311,13 +290,6 @@ def stiffness_points(curve: Curve) -> list[dict[str, object]]:
         for branch in curve.branches
         for phi in characteristic(branch.reach)
     ]
-
-
-def _stiffness(branch: Branch, phi: float) -> tuple[str, str]:
-    sigma, interval = _at(branch, phi)
-    if interval is None:
-        return f"{sigma:.4g}", "not claimed"
-    return f"{sigma:.4g}", f"{interval[0]:.4g} to {interval[1]:.4g}"
 
 
 def _at(branch: Branch, phi: float) -> tuple[float, Range | None]:

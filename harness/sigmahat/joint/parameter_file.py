@@ -79,15 +79,7 @@ def _ssv(sheet: Sheet, fmu: Fmu, starts: list[_Start], name: str) -> str:
         .render(
             element=name,
             comments=_head(sheet),
-            parameters=[
-                {
-                    "name": s.name,
-                    "type": s.variable.type,
-                    "value": s.item or s.text,
-                    "unit": s.variable.unit,
-                }
-                for s in listed
-            ],
+            starts=listed,
             units=[unit for unit in fmu.description.unitDefinitions if unit.name in units],
         )
     )

@@ -117,22 +117,6 @@ def _zero(torque: Polynomial, phi: np.ndarray[tuple[int], np.dtype[np.float64]])
     return float(real[np.argmin(np.abs(real - (phi[0] + phi[-1]) / 2))])
 
 
-_SHOWN = 0.01  # fraction of the largest torque: a smaller effect is not listed
-
-
-def _absent(sheet: Sheet, reach: Range) -> Iterator[str]:
-    """Effects that were found in the joint, but that the model does not have."""
-    p, setting = sheet.parameters, sheet.at_the_end.set_point
-    torque = float(np.max(np.abs(sheet.polynomial.at(np.array(reach), setting)[0])))
-    shown = {"hysteresis": _SHOWN * torque, "load_friction": _SHOWN, "delay": 0.0}
-    for name, smallest in shown.items():
-        if name in p and abs(p[name].value) > smallest:
-            unit = "" if p[name].unit == "1" else f" {p[name].unit}"
-            yield f"{name.replace('_', ' ')} {p[name].value:.3g}{unit}"
-    if sheet.polynomial.is_of_set_point:
-        yield f"how the stiffness is adjusted (this is the spring at set-point {setting:.6g})"
-
-
 def write_model(sheet: Sheet, kind: str, path: Path) -> None:
     """Writes the joint of a sheet as a model: mjcf, sdf, urdf or drake.
 
@@ -162,18 +146,17 @@ def write_model(sheet: Sheet, kind: str, path: Path) -> None:
         )
     )
     lines = [f"{name}_motor: the motor at its gear output; {name}_flexibility: the deformation."]
-    lines += [f"{name}_{key} = {_with_claim(each)}" for key, each in parameters.items()]
+    for key, each in parameters.items():
+        claim = (
+            "95 % from {:.6g} to {:.6g}".format(*each.interval) if each.interval else "no interval"
+        )
+        lines.append(f"{name}_{key} = {each.value:.6g} {each.unit}, {claim} ({each.interval_from})")
     lines += [*_limits(sheet, spring, reach), _MISSING[kind], *origin(sheet)]
     comments = [f"<!-- {line} -->" for line in lines if line]
     write_whole("\n".join(['<?xml version="1.0"?>', *comments, model, ""]), path)
 
 
-def _with_claim(parameter: Parameter) -> str:
-    claim = f"no interval ({parameter.interval_from})"
-    if parameter.interval is not None:
-        low, high = parameter.interval
-        claim = f"95 % from {low:.6g} to {high:.6g} ({parameter.interval_from})"
-    return f"{parameter.value:.6g} {parameter.unit}, {claim}"
+_SHOWN = 0.01  # fraction of the largest torque: a smaller effect is not listed
 
 
 def _limits(sheet: Sheet, spring: Spring, reach: Range) -> Iterator[str]:
@@ -182,5 +165,16 @@ def _limits(sheet: Sheet, spring: Spring, reach: Range) -> Iterator[str]:
     yield f"The data have deformations from {low:.4g} to {high:.4g} rad; outside is a guess."
     if spring.error > _EXACT:
         yield f"This spring differs from the data by up to {100 * spring.error:.2g} %."
-    if absent := list(_absent(sheet, reach)):
+    p, setting, absent = sheet.parameters, sheet.at_the_end.set_point, []
+    torque = float(np.max(np.abs(sheet.polynomial.at(np.array(reach), setting)[0])))
+    shown = {"hysteresis": _SHOWN * torque, "load_friction": _SHOWN, "delay": 0.0}
+    for name, smallest in shown.items():
+        if name in p and abs(p[name].value) > smallest:
+            unit = "" if p[name].unit == "1" else f" {p[name].unit}"
+            absent.append(f"{name.replace('_', ' ')} {p[name].value:.3g}{unit}")
+    if sheet.polynomial.is_of_set_point:
+        absent.append(
+            f"how the stiffness is adjusted (this is the spring at set-point {setting:.6g})"
+        )
+    if absent:
         yield f"Not in this model: {', '.join(absent)}."

@@ -4,8 +4,6 @@ start values of the FMU that continue from these results.
 Numbers are written with all of their digits, so that a reader gets exactly the estimates.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, replace

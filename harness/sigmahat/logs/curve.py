@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,18 +39,14 @@ def since_change(outputs: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]
 
 
 def restarts(age: NDArray[np.float64], before: float = -1.0) -> NDArray[np.intp]:
-    """Indices at which the output change_age starts again.
-
-    before  its value before the first index [s]
-    """
+    """Indices at which the output change_age [s] starts again; before: its value before them."""
     last = np.concatenate([[before], age[:-1]])
     return np.flatnonzero((age >= 0) & ((age < last) | (last < 0)))
 
 
 def _used(outputs: Mapping[str, NDArray[Any]]) -> NDArray[np.bool_]:
     """The ticks from which the estimator has learned."""
-    used: NDArray[np.bool_] = outputs["valid"].astype(bool) & (outputs["a"] > 0)
-    return used
+    return outputs["valid"].astype(bool) & (outputs["a"] > 0)
 
 
 @dataclass(frozen=True)
@@ -169,12 +165,11 @@ _OUTER = 0.1
 """Percent of the points left out at either end: single wrong samples do not set the range."""
 
 
-@dataclass(frozen=True)
-class Reach:
-    """The range of the data at a set-point."""
+class Reach(NamedTuple):
+    """A set-point [1], and the range of the deformations that were measured at it [rad]."""
 
-    set_point: float  # [1]
-    phi: Range  # range of the deformation that was measured at this set-point [rad]
+    set_point: float
+    phi: Range
 
 
 def reaches(points: MeasuredPoints, before: Sequence[LearnedLog], one_curve: bool) -> list[Reach]:
@@ -253,20 +248,22 @@ def curve(
     polynomial = sheet.polynomial(sheet.start_values(slave, every), *covered)
     reach = reaches(points, logs[:-1], not polynomial.is_of_set_point)
     grids = [_grid(each, polynomial) for each in reach]
-    rows: list[Any]
     if every["method"] == "FilteredRegression" and grids:
         found = _evaluated(slave, every, reach, grids)
         polynomial = sheet.with_knees(
             polynomial, *(found[name] for name in ("phi", "setPoint", "tau_e", "sigma"))
         )
         ends = np.cumsum([len(grid) for grid in grids])[:-1]
-        rows = [np.split(found[name], ends) for name in _OUTPUTS[:4]]
+        values = zip(*(np.split(found[name], ends) for name in _OUTPUTS[:4]), strict=True)
+        branches = [
+            Branch(*at, phi, *own) for at, phi, own in zip(reach, grids, values, strict=True)
+        ]
     else:
-        pairs = [polynomial.at(phi, r.set_point) for r, phi in zip(reach, grids, strict=True)]
-        nothing = [None] * len(pairs)
-        rows = [[pair[0] for pair in pairs], nothing, [pair[1] for pair in pairs], nothing]
-    each = zip(reach, grids, *rows, strict=True)
-    return Curve(polynomial, [Branch(r.set_point, r.phi, *values) for r, *values in each])
+        branches = []
+        for at, phi in zip(reach, grids, strict=True):
+            tau_e, sigma = polynomial.at(phi, at.set_point)
+            branches.append(Branch(*at, phi, tau_e, None, sigma, None))
+    return Curve(polynomial, branches)
 
 
 def union(ranges: Sequence[Range | None]) -> Range | None:

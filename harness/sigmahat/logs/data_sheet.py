@@ -8,7 +8,7 @@ from typing import Any
 from sigmahat.files import toml_file
 from sigmahat.files.output import sha256
 from sigmahat.fmi.installed import version
-from sigmahat.fmi.instance import Fmu, Slave, Value
+from sigmahat.fmi.instance import Slave, Value
 from sigmahat.fmi.sample_loop import present_values
 from sigmahat.joint import sheet
 from sigmahat.joint.curve import NORMAL_95, Curve
@@ -68,6 +68,9 @@ def data_sheet(replay: Replay, curve: Curve) -> sheet.Sheet:
     claims = replay.method == "FilteredRegression"
     sigma, half = last["sigma"], NORMAL_95 * last["sigma_std"]
     interval = (sigma - half, sigma + half) if claims else None
+    with Slave(slave.fmu, "check") as other:  # it is asked before any sample
+        other.initialize(start)
+        check = sheet.Check(**present_values(other, ["sigma", "tau_e"]))
     return sheet.Sheet(
         format=sheet.FORMAT.name,
         version=sheet.FORMAT.version,
@@ -94,7 +97,7 @@ def data_sheet(replay: Replay, curve: Curve) -> sheet.Sheet:
             absent=list(absent(every)),
         ),
         start_values=start,
-        check=_check(slave.fmu, start),
+        check=check,
     )
 
 
@@ -107,13 +110,6 @@ def _points(curve: Curve) -> list[sheet.Stiffness]:
         for phi, sigma, *interval in zip(*columns, strict=True):
             found.append(sheet.Stiffness(phi, branch.set_point, sigma, (interval[0], interval[1])))
     return found
-
-
-def _check(fmu: Fmu, start: Mapping[str, Value]) -> sheet.Check:
-    """Outputs of the FMU with the start values, before any sample."""
-    with Slave(fmu, "check") as other:
-        other.initialize(start)
-        return sheet.Check(**present_values(other, ["sigma", "tau_e"]))
 
 
 def _parameters(

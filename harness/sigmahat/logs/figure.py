@@ -64,13 +64,11 @@ def _sensor(replay: Replay) -> Array:
     samples = replay.samples
     values = samples.values[:, list(samples.names).index("tau_e_sensor")]
     starts = np.arange(0, len(values), replay.statistics.bucket)
-    ends: Array = np.column_stack([f.reduceat(values, starts) for f in (np.fmin, np.fmax)])
-    return ends
+    return np.column_stack([f.reduceat(values, starts) for f in (np.fmin, np.fmax)])
 
 
 def _skipped(samples: Samples) -> Array:
     """Begin and end of the longest stretches of ticks that the estimator skipped [s]."""
     both = np.column_stack(stretches(refused(samples.values)))
     longest = np.argsort(both[:, 1] - both[:, 0])[::-1][:200]
-    times: Array = samples.T * both[longest].astype(np.float64)
-    return times
+    return samples.T * both[longest].astype(np.float64)

@@ -103,21 +103,13 @@ def go_on(slave: Slave, learned: Learned, every: Mapping[str, Value], configurat
     except FmuError as error:
         raise LogError(f"{learned.path}: damaged: {error}; {_AGAIN}") from error
     names = [name for name, v in slave.fmu.variables.items() if v.causality == "parameter"]
-    _compare(learned, present_values(slave, names), every, configuration)
+    own = present_values(slave, names)
+    if differ := [name for name in every if own[name] != every[name]]:
+        first = {"method": 0, "samplePeriod": 1}
+        name = min(differ, key=lambda each: first.get(each, 2))
+        more = f" (and {len(differ) - 1} more)" if len(differ) > 1 else ""
+        raise LogError(
+            f"{configuration}: {name} = {every[name]}, but {learned.path} was learned with "
+            f"{own[name]}{more}; {_OTHER}"
+        )
     return gap(slave, t_0, every)
-
-
-def _compare(
-    learned: Learned, theirs: Mapping[str, Value], ours: Mapping[str, Value], configuration: Path
-) -> None:
-    """Raises LogError for the first parameter that differs; method and samplePeriod first."""
-    order = {"method": 0, "samplePeriod": 1}
-    differ = [name for name in ours if theirs[name] != ours[name]]
-    if not differ:
-        return
-    name = min(differ, key=lambda each: order.get(each, 2))
-    more = f" (and {len(differ) - 1} more)" if len(differ) > 1 else ""
-    raise LogError(
-        f"{configuration}: {name} = {ours[name]}, but {learned.path} was learned with "
-        f"{theirs[name]}{more}; {_OTHER}"
-    )

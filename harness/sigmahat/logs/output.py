@@ -119,8 +119,7 @@ def _rounded(values: NDArray[np.float64]) -> NDArray[np.float32]:
     third of the file.
     """
     bits = values.astype(np.float32).view(np.uint32)
-    rounded: NDArray[np.float32] = ((bits + 0x40) & 0xFFFFFF80).view(np.float32)
-    return rounded
+    return ((bits + 0x40) & 0xFFFFFF80).view(np.float32)
 
 
 def _is_split(name: str, column: pa.ChunkedArray) -> bool:

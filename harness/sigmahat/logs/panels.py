@@ -66,8 +66,7 @@ def _extremes(x: NDArray[np.float32], bucket: int) -> NDArray[np.float32]:
     low = np.where(np.isnan(table), np.inf, table).argmin(axis=1)
     high = np.where(np.isnan(table), -np.inf, table).argmax(axis=1)
     order = np.column_stack([np.minimum(low, high), np.maximum(low, high)])
-    flat: NDArray[np.float32] = np.take_along_axis(table, order, axis=1).ravel()
-    return flat
+    return np.take_along_axis(table, order, axis=1).ravel()
 
 
 Band = tuple[NDArray[Any], NDArray[Any]]
@@ -169,7 +168,10 @@ def quantity_panels(reduced: Reduced, estimator: str) -> Iterator[Panel]:
             curves = _curves(labels, side, reduced)
             if curves:
                 full = f"{title}{of_side(side)}{whose}"
-                yield Panel(full, _TIME, axis, curves, y_range=_every(curves))
+                # A spike, for example after a gap, does not change them.
+                low, high = zip(*(limits(curve.y) for curve in curves), strict=True)
+                y_range = with_margin(min(low), max(high), 0.06)
+                yield Panel(full, _TIME, axis, curves, y_range=y_range)
 
 
 def sampling(reduced: Reduced) -> list[str]:
@@ -215,12 +217,6 @@ def _error(estimate: NDArray[Any], true: NDArray[Any]) -> NDArray[np.float32]:
         error: NDArray[np.float32] = (100 * np.abs(estimate / true - 1)).astype(np.float32)
     error[~(error > 0) | ~np.isfinite(error)] = np.nan
     return error
-
-
-def _every(curves: Sequence[Curve]) -> tuple[float, float]:
-    """Limits of an axis that do not depend on a spike, for example after a gap."""
-    ends = [limits(curve.y) for curve in curves]
-    return with_margin(min(end[0] for end in ends), max(end[1] for end in ends), 0.06)
 
 
 def curve_panels(curve: joint.Curve, points: MeasuredPoints) -> Iterator[Panel]:

@@ -10,8 +10,6 @@ times the usual interval of the column. All other ticks get nan, and the estimat
 column with a sample for nearly every tick is only interpolated if a longest gap is configured.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from weakref import WeakKeyDictionary

@@ -56,6 +56,11 @@ class TorqueError:
         rms, std = float(np.sqrt(np.mean(error**2))), float(np.std(torque))
         return TorqueError(rms, std, len(error) / ticks)
 
+    def as_dict(self) -> dict[str, float]:
+        """For JSON; units are in the names."""
+        own = {"rms [N.m]": self.rms, "std [N.m]": self.std}
+        return {**own, "relative [1]": self.relative, "share": self.share}
+
 
 def torque_errors(
     fmu: Fmu, samples: Samples, start: Mapping[str, Value]
@@ -205,8 +210,8 @@ class Validation:
             "learned_from": self.learned_from,
             "repeated": self.repeated,
             "ticks": self.ticks,
-            "torque": _torque(self.torque),
-            "torque below 2 Hz": _torque(self.torque_below),
+            "torque": self.torque and self.torque.as_dict(),
+            "torque below 2 Hz": self.torque_below and self.torque_below.as_dict(),
             "stiffness learned [N.m/rad]": both.before,
             "stiffness of this log [N.m/rad]": both.alone,
             "this log within learned": both.alone_in_before,
@@ -217,17 +222,6 @@ class Validation:
             "fault": self.fault,
             "notes": self.notes,
         }
-
-
-def _torque(error: TorqueError | None) -> dict[str, float] | None:
-    if error is None:
-        return None
-    return {
-        "rms [N.m]": error.rms,
-        "std [N.m]": error.std,
-        "relative [1]": error.relative,
-        "share": error.share,
-    }
 
 
 def validate(log: Log, configuration: Configuration, start_from: str | Path) -> Validation:
