@@ -125,9 +125,10 @@ def test_the_band_holds_without_noise(page: LivePage) -> None:
     for noise in (0, 1):
         page.sets("noise", noise)
         simulate(page, 45)
-        last = "return ['low', 'sigma', 'high'].map((name) => joint.history.get(name).at(-1))"
-        low, sigma, high = page.page.run(last)
-        assert low < sigma < high
+        names = "['sigma', 'sigma_hat', 'half']"
+        last = f"return {names}.map((name) => joint.history.get(name).at(-1))"
+        sigma, estimate, half = page.page.run(last)
+        assert abs(estimate - sigma) < half
         assert page.text("value-doubt") == "confident"
 
 
