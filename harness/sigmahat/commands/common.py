@@ -43,6 +43,11 @@ def _for_scripts(context: click.Context, parameter: click.Parameter, given: bool
         logger.setLevel(logging.ERROR)
 
 
+def command(example: str, **more: Any) -> Callable[[Callable[..., object]], click.Command]:
+    """As click.command, with an example at the end of the help."""
+    return click.command(epilog=f"\b\nExample: sigmahat {example}", **more)
+
+
 log_argument = click.argument("log", type=PATH)
 joint_option = click.option(
     "--joint",
@@ -54,8 +59,6 @@ force_option = click.option("--force", is_flag=True, help="Overwrite the file if
 
 
 def config_option(what: str) -> Callable[[_Command], _Command]:
-    """Gives a command with LOG the option --config."""
-
     def path(context: click.Context, _: click.Parameter, given: Path | None) -> Path:
         return given or configuration_of(context.params["log"])
 
@@ -124,7 +127,6 @@ def for_each_joint(
 
 
 def _with_name(job: Callable[[str], _Result], joint: str) -> _Result:
-    """The result of a job; its errors name the joint."""
     from sigmahat.logs.log import LogError
 
     try:

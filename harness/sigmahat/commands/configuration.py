@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from sigmahat.identification.quantities import Identified
 
 
-@click.command()
+@common.command("init knee.csv")
 @common.log_argument
 @common.config_option("File to write.")
 @click.option(
@@ -34,9 +34,6 @@ def init(log: Path, config: Path, joint: str | None, force: bool) -> None:
     from names and values of the columns. What cannot be guessed is marked with FILL IN.
 
     For a log of several joints, the file has a section for each joint, and common values once.
-
-    \b
-    Example: sigmahat init knee.csv
     """
     from sigmahat.files.output import write_whole
     from sigmahat.guessing import template
@@ -87,7 +84,7 @@ def _guessed(joint: JointGuess) -> Iterator[str]:
     yield ""
 
 
-@click.command("open")
+@common.command("open knee.csv", name="open")
 @common.log_argument
 @common.config_option("File to start from and to write.")
 @click.option(
@@ -101,9 +98,6 @@ def open_page(log: Path, config: Path, port: int) -> None:
 
     The page is served on this computer alone, at an address with a token, until Ctrl-C. The page
     writes the same file as `sigmahat init`.
-
-    \b
-    Example: sigmahat open knee.csv
     """
     from sigmahat.logs.configuration import read_document
     from sigmahat.logs.readers.formats import open_log
@@ -119,7 +113,7 @@ def open_page(log: Path, config: Path, port: int) -> None:
         click.echo(f"  sigmahat open {log} --config {draft}")
 
 
-@click.command()
+@common.command("check knee.csv --config knee.toml")
 @common.log_argument
 @common.config_option("File from `sigmahat init`.")
 @common.joint_option
@@ -129,9 +123,6 @@ def check(log: Path, config: Path, joint: str) -> int:
 
     Errors of signs, units, gear ratios, zeros and delays are found. What no log can show is listed.
     Exit status: 0 if nothing contradicts the log, 1 if something does.
-
-    \b
-    Example: sigmahat check knee.csv --config knee.toml
     """
     from sigmahat.checks.findings import as_dict
     from sigmahat.checks.text import summary
@@ -149,7 +140,7 @@ def _checked(log: Path, config: Path, joint: str) -> Checked:
     return check(*common.opened(log, config, joint))
 
 
-@click.command()
+@common.command("identify knee.csv --config knee.toml")
 @common.log_argument
 @common.config_option("File to read and to update.")
 @common.joint_option
@@ -164,9 +155,6 @@ def identify(log: Path, config: Path, joint: str, torque_constant: bool, dry_run
     """Identify B, D_theta and Coulomb friction from LOG; write them into the configuration.
 
     A value that the motion does not determine is not written, but reported. Comments are kept.
-
-    \b
-    Example: sigmahat identify knee.csv --config knee.toml
     """
     import tomlkit
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from sigmahat.validation.validate import Validation
 
 
-@click.command()
+@common.command("estimate knee.parquet --config knee.toml --out knee")
 @common.log_argument
 @common.config_option("File from `sigmahat init`.")
 @common.out_option("Folder for table and figure.", "{log}")
@@ -50,9 +50,6 @@ def estimate(
     (estimate.curve.csv) and a figure. Also writes a data sheet of the joint
     (joint.json) for `sigmahat export`, and what was learned (state.json) for --start-from.
     With several joints, each joint has its own folder, and a row in joints.csv.
-
-    \b
-    Example: sigmahat estimate knee.parquet --config knee.toml --out knee
     """
     from sigmahat.checks.findings import as_dict
     from sigmahat.checks.text import IN_LOG
@@ -110,7 +107,7 @@ def _import(module: str) -> None:
         import_module(module)
 
 
-@click.command()
+@common.command("validate second.csv --with knee.toml")
 @common.log_argument
 @click.option(
     "--with",
@@ -131,9 +128,6 @@ def validate(log: Path, config: Path, start_from: Path | None, joint: str) -> in
 
     LOG is replayed with the learned stiffness, and without. Exit status: 0 if the logs agree, 1 if
     the logs disagree or decide nothing.
-
-    \b
-    Example: sigmahat validate second.csv --with knee.toml
     """
     from sigmahat.validation.validate import summary
 
@@ -159,7 +153,7 @@ _MODELS = {"mjcf": ".xml", "sdf": ".sdf", "urdf": ".urdf", "drake": ".drake.sdf"
 _SUFFIXES = {**_START_VALUES, **_MODELS}
 
 
-@click.command()
+@common.command("export sigmahat-results/knee --to mjcf")
 @click.argument("sheet", type=common.PATH)
 @click.option(
     "--to",
@@ -181,9 +175,6 @@ def export(sheet: Path, to: str, out: Path | None, force: bool) -> None:
     SHEET is the joint.json that `sigmahat estimate` wrote, or its folder. An FMU with these start
     values begins with the stiffness that was learned. The joint has two hinges, motor and
     flexibility, with the intervals of all parameters.
-
-    \b
-    Example: sigmahat export sigmahat-results/knee --to mjcf
     """
     from sigmahat.fmi.instance import installed
     from sigmahat.joint import parameter_file
@@ -204,7 +195,7 @@ def export(sheet: Path, to: str, out: Path | None, force: bool) -> None:
     common.answer(text)
 
 
-@click.command()
+@common.command("report sigmahat-results/table1")
 @click.argument("folder", type=common.PATH)
 @click.option("--out", type=common.FILE, help="File to write.  [default: report.html in FOLDER]")
 @common.quiet_option
@@ -213,9 +204,6 @@ def report(folder: Path, out: Path | None) -> None:
 
     FOLDER is what `sigmahat reproduce`, `estimate`, `sweep` or `compare` wrote. The file opens
     offline.
-
-    \b
-    Example: sigmahat report sigmahat-results/table1
     """
     from sigmahat.files.output import write_whole
     from sigmahat.report.page import report as make
