@@ -62,8 +62,6 @@ rls.m = 1
 
 @dataclass(frozen=True)
 class Estimated:
-    """The estimate from the log of a run."""
-
     table: pa.Table  # what `sigmahat estimate` wrote for each sample
     stiffness: float  # at the end [N.m/rad]
     std: float  # its standard deviation [N.m/rad]
@@ -72,8 +70,6 @@ class Estimated:
 
 @dataclass(frozen=True)
 class Axis:
-    """One axis of the robot."""
-
     number: int
     estimated: Sequence[Estimated]
     """From run a, from run b, and from b after a."""
@@ -146,7 +142,6 @@ def draw(axes: Sequence[Axis]) -> Figure:
 
 
 def table(axes: Sequence[Axis]) -> str:
-    """Rows for each axis."""
     lines = [
         "| axis | run a | run b | a, then b | confident | torque of the other run below 2 Hz |",
         "|---|---|---|---|---|---|",
@@ -164,7 +159,6 @@ def table(axes: Sequence[Axis]) -> str:
 
 
 def main(picture: Path) -> None:
-    """Prints the table and draws the figure."""
     data, axes = data_folder("kr300", "kr300_a.csv"), []
     for number in AXES:
         with tempfile.TemporaryDirectory() as place:

@@ -83,7 +83,6 @@ class Hand:
         return found
 
     def value(self, name: str) -> str:
-        """What an input shows."""
         return str(self.page.run("return arguments[0].value", self.find(name)))
 
     def types(self, name: str, text: str) -> None:
@@ -118,7 +117,6 @@ class Hand:
         self.page.until(is_accepted, f"accept {name}")
 
     def text(self) -> str:
-        """All that the page says."""
         return " ".join(str(self.page.run(_TEXT)).split())
 
     def sees(self, words: str) -> None:

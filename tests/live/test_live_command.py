@@ -24,7 +24,6 @@ needs_signals = pytest.mark.skipif(sys.platform == "win32", reason="Windows has 
 
 
 def nested(message: dict[str, Any]) -> bytes:
-    """A message as JSON."""
     motor, link, torque = (message[f"arm/{name}"] for name in ("motor", "link[0]", "torque"))
     arm = {"motor": motor, "link": [link], "torque": torque}
     return json.dumps({"t": message["t"], "arm": arm}).encode()

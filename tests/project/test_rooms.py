@@ -33,7 +33,6 @@ def imported(path: Path) -> Iterator[str]:
 
 @pytest.fixture(scope="module")
 def graph() -> Graph:
-    """What each module imports of this package."""
     files = modules()
     return {name: set(imported(path)) & files.keys() - {name} for name, path in files.items()}
 

@@ -68,7 +68,6 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
 
 @pytest.fixture(scope="module")
 def page() -> Iterator[Page]:
-    """A browser for all reports."""
     with opened("about:blank") as page:
         yield page
 

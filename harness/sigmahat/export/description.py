@@ -229,7 +229,6 @@ def terminals_and_icons(root: Element) -> Element:
 
 
 def _measurements(root: Element) -> list[tuple[str, str]]:
-    """Variables of the terminal and their member names."""
     names = [(v.attrib["causality"], v.attrib["name"]) for v in variables(root)]
     measured = [name for kind, name in names if kind == "output" and "_measured" in name]
     if measured:

@@ -85,8 +85,6 @@ def _check(
 def _list_variables(
     plant: PlantEquations, variables: Mapping[str, PlantVariable], listed: Element
 ) -> None:
-    """Fills the element ModelVariables."""
-
     def add(name: str, causality: str, **attributes: str) -> None:
         variable = variables[name]
         element = ElementTree.SubElement(listed, "ScalarVariable", name=name, causality=causality)

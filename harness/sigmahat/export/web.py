@@ -88,7 +88,6 @@ def _variable(variable: Any) -> dict[str, Any]:
 
 
 def _scenario(fmus: Mapping[str, Path]) -> dict[str, Any]:
-    """The conditions of Table I."""
     table1 = scenario("table1")
     estimator = table1.estimators["RESIDUAL"]
     return {
@@ -101,6 +100,5 @@ def _scenario(fmus: Mapping[str, Path]) -> dict[str, Any]:
 
 
 def _numbers(fmu: Path, start: Mapping[str, Value]) -> dict[str, float | int]:
-    """Start values as numbers for FMI."""
     with Fmu(fmu) as opened:
         return {name: opened.number(name, value) for name, value in start.items()}

@@ -94,8 +94,6 @@ class Number:
 
 
 class Choice:
-    """A list to choose from."""
-
     def __init__(
         self,
         setup: Setup,
@@ -123,7 +121,6 @@ class Choice:
         self.widget.on_change("value", self._picked)
 
     def offer(self, items: Sequence[str]) -> None:
-        """Offers these items instead."""
         self._options = [(each, each) for each in items]
         self.widget.options = list(self._options)
 

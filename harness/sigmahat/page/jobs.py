@@ -23,7 +23,6 @@ _WIDTH, _HEIGHT = 160, 28  # of the line of a preview
 
 
 def look(log: Log, name: str) -> Look:
-    """The preview of a column of a log."""
     try:
         values = log.read(name)
     except LogError:
@@ -88,7 +87,6 @@ class Jobs:
             self._thread.start()
 
     def wanted(self) -> None:
-        """The configuration has changed: check it."""
         setup = self._setup
         setup.busy = "Checking ..."
         with self._news:

@@ -81,7 +81,6 @@ class PortPanel:
         self._notes.visible = bool(self._notes.text)
 
     def _name(self) -> str:
-        """The column that is chosen."""
         name = self._setup.get(f"{self._where}.column")
         return _NONE if name in (None, FILL_IN) else str(name)
 
@@ -91,7 +90,6 @@ class PortPanel:
         return str(self._setup.get(f"{self._where}.unit") or UNITS[self._port][0])
 
     def _comments(self) -> str:
-        """Comments on uncertain guesses."""
         comment = partial(edits.comment_of, self._setup.document)
         keys = ("unit", "sign", *(field.key for field in OF_PORT))
         found = ((key, comment(f"{self._where}.{key}")) for key in keys)
@@ -255,8 +253,6 @@ class SavingBar:
 
 
 class Window:
-    """Shows a setup in a document."""
-
     def __init__(
         self,
         setup: Setup,

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class TextTable:
-    """Cells as text."""
-
     title: str
     head: Sequence[str]
     rows: Sequence[Sequence[str]]
@@ -31,8 +29,6 @@ class TextTable:
 
 @dataclass(frozen=True)
 class Contents:
-    """All of a report."""
-
     title: str
     lines: Sequence[str]  # of text, below the title
     tables: Sequence[TextTable]

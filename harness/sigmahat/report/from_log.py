@@ -35,8 +35,6 @@ _OF_THE_METHOD = ("a", "rho")  # inner outputs of the method, which are not in t
 
 @dataclass(frozen=True)
 class _Answer:
-    """Contents of the files beside the table."""
-
     sheet: sheet.Sheet
     replayed: Replayed
     curve: Curve
@@ -129,7 +127,6 @@ def _origin(answer: _Answer, folder: Path) -> str:
 
 
 def findings_table(findings: Sequence[tuple[str, str]]) -> TextTable:
-    """The findings of the checks: severity and sentence."""
     note = "" if findings else "Nothing in the log contradicts the configuration."
     return TextTable("Checks", ["", "finding"], list(map(list, findings)), (0, 1), note=note)
 
@@ -195,7 +192,6 @@ def curve_table(curve: Curve) -> TextTable:
 
 
 def found_table(sheet: Sheet) -> TextTable:
-    """Motor data and other estimates, with intervals."""
     rows = []
     for name, each in sheet.parameters.items():
         interval = "-" if each.interval is None else " to ".join(map(number, each.interval))

@@ -195,7 +195,6 @@ def report(folder: Path) -> str:
 
 
 def _page(contents: Contents) -> str:
-    """The report as HTML."""
     panels, first = [*contents.answer, *contents.panels], len(contents.answer)
     script, divs = components(plots(panels, contents.every, contents.marks)) if panels else ("", [])
     shown = list(zip(range(len(panels)), panels, divs, strict=True))
