@@ -56,13 +56,9 @@ def served(*arguments: str, folder: Path, browser: str = "true") -> Iterator[Ser
     """
     command = [sys.executable, "-m", "sigmahat", "open", *arguments]
     environment = {**os.environ, "BROWSER": browser, "PATH": "/bin", "PYTHONUNBUFFERED": "1"}
+    pipe = subprocess.PIPE
     process = subprocess.Popen(
-        command,
-        cwd=folder,
-        env=environment,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
+        command, cwd=folder, env=environment, stdout=pipe, stderr=pipe, text=True
     )
     try:
         yield Served(process)

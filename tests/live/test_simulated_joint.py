@@ -140,15 +140,6 @@ def test_what_an_fmu_refuses_is_shown_in_its_own_words(page: LivePage) -> None:
     assert page.text("joint-message") == ""
 
 
-def test_the_browser_lets_the_page_send_nothing(page: LivePage) -> None:
-    script = """
-    const done = arguments[0];
-    document.addEventListener("securitypolicyviolation", (event) => done(event.effectiveDirective));
-    fetch("http://127.0.0.1:9/").catch(() => {});
-    """
-    assert page.page.driver.execute_async_script(script) == "connect-src"
-
-
 @pytest.mark.parametrize(("width", "dark"), [(1400, False), (360, True)], ids=["desk", "phone"])
 def test_it_fits_the_window_without_a_complaint(width: int, dark: bool, site: Path) -> None:
     with live_page(site / "live", width, dark) as live:
