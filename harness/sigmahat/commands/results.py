@@ -15,7 +15,9 @@ from sigmahat.commands import common
 
 if TYPE_CHECKING:
     from sigmahat.checks.findings import Checked
+    from sigmahat.logs.configuration import Configuration
     from sigmahat.logs.estimate import Estimate
+    from sigmahat.logs.log import Log
     from sigmahat.validation.validate import Validation
 
 
@@ -60,7 +62,7 @@ def estimate(
     if to is not None:
         import_module("mcap")  # report a missing package before the work
     with common.errors_in_one_line(out):
-        job = partial(_estimated, log, config, out, start_from, to)
+        job = partial(_estimated, out, start_from, to)
         found = common.for_each_joint(log, config, joint, job)
         if len(found) > 1:
             write_joints({name: each for name, (each, _) in found.items()}, out)
@@ -80,7 +82,7 @@ def estimate(
 
 
 def _estimated(
-    log: Path, config: Path, out: Path, start_from: Path | None, to: str | None, joint: str
+    out: Path, start_from: Path | None, to: str | None, log: Log, configuration: Configuration
 ) -> tuple[Estimate, Checked]:
     """Writes the files of a joint. Returns its estimate and the result of the checks."""
     from sigmahat.checks.check import check
@@ -88,15 +90,14 @@ def _estimated(
     from sigmahat.files.output import output_folder
     from sigmahat.logs import estimate as job
 
-    opened, configuration = common.opened(log, config, joint)
     # The figure needs this import, which can run meanwhile: the replay is mostly C code.
     Thread(target=_import, args=["matplotlib.figure"]).start()
-    checked = check(opened, configuration)
+    checked, own = check(log, configuration), out / configuration.joint
     if start_from is not None and start_from.is_dir():
-        start_from /= joint
-    with common.progress("Replaying", 1000) as bar, output_folder(out / joint) as folder:
+        start_from /= configuration.joint
+    with common.progress("Replaying", 1000) as bar, output_folder(own) as folder:
         result = job.estimate(
-            opened, configuration, folder, bar.update, start_from, to == "mcap", rows(checked)
+            log, configuration, folder, bar.update, start_from, to == "mcap", rows(checked)
         )
     return result, checked
 
@@ -133,19 +134,18 @@ def validate(log: Path, config: Path, start_from: Path | None, joint: str) -> in
 
     start_from = start_from or Path("sigmahat-results", config.stem)
     with common.errors_in_one_line(start_from, "--start-from"):
-        job = partial(_validated, log, config, start_from)
+        job = partial(_validated, start_from)
         found = common.for_each_joint(log, config, joint, job)
     texts = {name: summary(each) for name, each in found.items()}
     common.answer_of_joints(texts, {name: each.as_dict() for name, each in found.items()})
     return 0 if all(each.agree for each in found.values()) else 1
 
 
-def _validated(log: Path, config: Path, start_from: Path, joint: str) -> Validation:
+def _validated(start_from: Path, log: Log, configuration: Configuration) -> Validation:
     from sigmahat.validation.validate import validate
 
-    if start_from.is_dir():
-        start_from /= joint
-    return validate(*common.opened(log, config, joint), start_from)
+    learned = start_from / configuration.joint if start_from.is_dir() else start_from
+    return validate(log, configuration, learned)
 
 
 _START_VALUES = {"ssv": ".ssv", "matlab": ".m", "modelica": ".mo"}
