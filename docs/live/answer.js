@@ -8,10 +8,6 @@ const answer = {
     this.plots = ["log-stiffness", "curve-stiffness", "curve-torque"].map((id) => new Plot(id));
   },
 
-  hide() {
-    document.getElementById("result").hidden = true;
-  },
-
   /** Of a LogEstimate that has run. */
   show(run) {
     const { sigma, sigma_std: std } = run.columns, warning = run.fmu.warnings[0];
@@ -42,10 +38,9 @@ function reach(curves, sigma) {
   return [least < 0 ? bottom : 0, most > 0 ? top : 0];
 }
 
-/** The answer in words. */
 function inWords(run, curves, warning) {
   const values = curves.map(({ phi, sigma, std, doubt, setPoint }) => {
-    const i = nextToZero(phi);
+    const i = phi.reduce((best, value, k) => (Math.abs(value) < Math.abs(phi[best]) ? k : best), 0); // next to 0
     const where = curves.length > 1 ? ` at set-point ${shortly(setPoint)}` : "";
     return `${withBand(sigma[i], NORMAL_95 * std[i])} N·m/rad at ${threeDigits(phi[i])} rad${where} (${confidence(doubt[i])})`;
   });

@@ -40,7 +40,6 @@ const joint = {
     return Number(this.form.elements[name].value);
   },
 
-  /** A new simulation with the settings. */
   start() {
     try {
       this.simulation = new Simulation(this.plant, this.estimator, this.starts(), SHOWN);
@@ -146,7 +145,6 @@ const joint = {
 
 const METHODS = FMUS.StiffnessEstimator.variables.method.items;
 
-/** Writes a text into the page. */
 function say(id, text) {
   document.getElementById(id).textContent = text;
 }

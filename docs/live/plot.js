@@ -173,14 +173,11 @@ function ticks([low, high], count) {
   const step = power * [1, 2, 5, 10].find((factor) => factor * power >= rough);
   const digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
   const found = [];
-  for (let i = Math.ceil(low / step); i * step <= high + 1e-9 * step; i += 1)
-    found.push({ value: i * step, label: label(i * step, digits) });
+  for (let i = Math.ceil(low / step); i * step <= high + 1e-9 * step; i += 1) {
+    const value = i * step, large = Math.abs(value) >= 1e5 || (digits > 4 && value !== 0);
+    found.push({ value, label: large ? shortly(value) : value.toFixed(value ? digits : 0).replace("-", "−") });
+  }
   return found;
-}
-
-function label(value, digits) {
-  const large = Math.abs(value) >= 1e5 || (digits > 4 && value !== 0);
-  return large ? shortly(value) : value.toFixed(value ? digits : 0).replace("-", "−");
 }
 
 /** Smallest and largest of the values that are finite, of several arrays. */

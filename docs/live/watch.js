@@ -47,7 +47,6 @@ const watch = {
     if (names.length) this.choose(names.includes(chosen) ? chosen : names[0]);
   },
 
-  /** Shows this joint from now on. */
   choose(name) {
     this.field.value = name;
     const id = this.channels.get(name), old = this.subscribed;
