@@ -33,17 +33,23 @@ class _Call(ctypes.Structure):
     )
 
     def __init__(
-        self, kind: int, slave: Slave, call: Any, given: Sequence[Any], table: NDArray[Any]
+        self, kind: int, slave: Slave, callee: Any, given: Sequence[Any], table: NDArray[Any]
     ) -> None:
         """given  value references, and orders of derivatives"""
+        count = len(given[0]) if given else 2
+        dtype = np.dtype(np.int32 if kind == _GET_INTEGER else np.float64)
+        if not table.flags.c_contiguous or table.dtype != dtype or table.shape[-1] != count:
+            raise ValueError(
+                f"expected a C-contiguous table of {dtype} with {count} columns, got one of "
+                f"{table.dtype} and shape {table.shape}"
+            )
         arrays = [ctypes.addressof(each) for each in given] + [0, 0]
-        count = len(given[0]) if given else 0
         stride = table.strides[0] if table.ndim == 2 else 0
-        address = ctypes.cast(call, ctypes.c_void_p)
+        address = ctypes.cast(callee, ctypes.c_void_p)
         super().__init__(
             kind, slave.component, address, arrays[0], count, arrays[1], table.ctypes.data, stride
         )
-        self.slave, self.call, self.given, self.table = slave, call, given, table
+        self.slave, self.callee, self.given, self.table = slave, callee, given, table
 
 
 class SampleLoop:
@@ -94,7 +100,7 @@ class SampleLoop:
             refused = self._run(first, end)
         if refused < len(self._calls):
             call = self._calls[refused]
-            raise call.slave.failure(call.call.__name__)
+            raise call.slave.failure(f"{call.callee.__name__} failed")
 
     def _run(self, first: int, end: int) -> int:
         """Returns the index of the call that failed, or the number of calls."""
@@ -105,17 +111,8 @@ class SampleLoop:
             self._native = (_Call * len(self._calls))(*self._calls)
         return int(library.sh_sample_loop(self._native, len(self._calls), first, end))
 
-    def _add(
-        self, kind: int, slave: Slave, call: Any, given: Sequence[Any], table: NDArray[Any]
-    ) -> None:
-        count = len(given[0]) if given else 2
-        dtype = np.dtype(np.int32 if kind == _GET_INTEGER else np.float64)
-        if not table.flags.c_contiguous or table.dtype != dtype or table.shape[-1] != count:
-            raise ValueError(
-                f"expected a C-contiguous table of {dtype} with {count} columns, got one of "
-                f"{table.dtype} and shape {table.shape}"
-            )
-        self._calls.append(_Call(kind, slave, call, given, table))
+    def _add(self, *fields: Any) -> None:
+        self._calls.append(_Call(*fields))
         self._native = None
 
 
@@ -135,7 +132,7 @@ def _run_in_python(calls: list[_Call], first: int, end: int) -> int:
                 arguments = [*row, fmi2.fmi2True]
             else:
                 arguments = [call.given[0], call.count, *call.given[1:], row]
-            if call.call(call.slave.component, *arguments) > fmi2.fmi2Warning:
+            if call.callee(call.slave.component, *arguments) > fmi2.fmi2Warning:
                 return place
     return len(calls)
 
