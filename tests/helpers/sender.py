@@ -84,7 +84,6 @@ class Viewer:
 
 
 def free_port() -> int:
-    """A port of this computer that nobody uses."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         return int(probe.getsockname()[1])

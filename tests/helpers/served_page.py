@@ -86,7 +86,6 @@ class Hand:
         self.find(name).send_keys(Keys.CONTROL, "a", Keys.NULL, text, Keys.TAB)
 
     def chooses(self, name: str, item: str) -> None:
-        """Chooses from a list, by what it shows."""
         Select(self.find(name)).select_by_visible_text(item)
 
     def presses(self, name: str) -> None:
@@ -116,5 +115,4 @@ class Hand:
         return " ".join(str(self.page.run(_TEXT)).split())
 
     def sees(self, words: str) -> None:
-        """Waits until the page says something."""
         self.page.until(lambda: words in self.text(), words)

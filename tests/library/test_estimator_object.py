@@ -39,7 +39,6 @@ def z() -> Samples:
 
 
 def by_fmu(z: Samples, start: Mapping[str, Any]) -> Samples:
-    """All outputs of the FMU, called from Python."""
     with Fmu(sigmahat.fmu("StiffnessEstimator")) as fmu, Slave(fmu, "one") as slave:
         slave.initialize(start)
         every = [name for name, v in fmu.variables.items() if v.causality == "output"]
