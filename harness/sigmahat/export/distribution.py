@@ -59,12 +59,13 @@ def write(
         folder.mkdir()
         for each in contents:
             shutil.copy(each, folder)
-        for platform, tag in TAGS.items():
+        for platform in PLATFORMS:
             stem = folder / "sigmahat_native"
             library = compile_shared(sources, includes, stem, platform, cache)
             _python(project, "-m", "wheel", "pack", tree, "--dest-dir", scratch)
             (packed,) = Path(scratch).glob("*.whl")
-            _python(project, "-m", "wheel", "tags", "--remove", "--platform-tag", tag, packed)
+            tag = ("--platform-tag", TAGS[platform])
+            _python(project, "-m", "wheel", "tags", "--remove", *tag, packed)
             (tagged,) = Path(scratch).glob("*.whl")
             shutil.move(tagged, out)
             library.unlink()
@@ -78,6 +79,3 @@ def _python(project: Path, *arguments: str | Path) -> None:
         check=True,
         stdout=subprocess.DEVNULL,
     )
-
-
-assert TAGS.keys() == PLATFORMS.keys()

@@ -103,7 +103,10 @@ def _list_variables(
         # The variables on which the initial value of the output depends.
         symbols = (s.name() for s in ca.symvar(ca.substitute(expression, x, start)))
         depends = sorted({SEED if s in noise else s for s in symbols})
-        discrete = _has_steps(expression) or SEED in depends
+        # Rounding, for example of an encoder, makes steps.
+        function = ca.Function("output", ca.symvar(expression), [expression])
+        operations = map(function.instruction_id, range(function.n_instructions()))
+        discrete = ca.OP_FLOOR in operations or SEED in depends
         variability, on = "discrete" if discrete else "continuous", " ".join(depends)
         add(name, "output", variability=variability, initial="calculated", depends=on)
     # Start values of states depend on these.
@@ -123,12 +126,6 @@ _NOISE = f"""<ModelVariables>
  description="Time between two samples of the noise, which is held in between">
 <Real unit="s" start="1e-3" min="1e-9"/></ScalarVariable>
 </ModelVariables>"""
-
-
-def _has_steps(expression: ca.SX) -> bool:
-    """Whether the expression contains rounding, for example of an encoder."""
-    function = ca.Function("output", ca.symvar(expression), [expression])
-    return ca.OP_FLOOR in map(function.instruction_id, range(function.n_instructions()))
 
 
 def compile_folder(sources: Path, binary: Path) -> None:

@@ -100,7 +100,12 @@ class Estimator:
         """
         given = dict(zip(INPUTS, (theta, q, theta_c, tau, tau_e_sensor), strict=True))
         self._need(given)
-        arrays = {name: _samples(each) for name, each in given.items() if each is not None}
+        # For C; masked samples are nan.
+        arrays: dict[str, Array] = {
+            name: np.asarray(np.ma.filled(np.ma.asarray(each, np.float64), np.nan), order="C")
+            for name, each in given.items()
+            if each is not None
+        }
         shape = arrays["theta"].shape
         if len(shape) not in (1, 2) or any(each.shape != shape for each in arrays.values()):
             shapes = ", ".join(f"{name} {each.shape}" for name, each in arrays.items())
@@ -285,10 +290,3 @@ class Estimator:
             }
 
         return tick
-
-
-def _samples(values: ArrayLike) -> Array:
-    """Samples as an array for C; masked samples are nan."""
-    if isinstance(values, np.ma.MaskedArray):
-        values = np.ma.filled(values.astype(np.float64), np.nan)
-    return np.asarray(values, np.float64, order="C")

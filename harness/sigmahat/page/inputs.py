@@ -39,7 +39,6 @@ def words(html: str = "", name: str | None = None, **styles: str | None) -> Div:
 
 
 def button(name: str, clicked: Callable[[], object], label: str = "", **more: Any) -> Button:
-    """A button that calls `clicked`; `more` is passed to Bokeh."""
     made = Button(label=label, name=name, stylesheets=[style()], **more)
     made.on_click(lambda: clicked())
     return made

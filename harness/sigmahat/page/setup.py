@@ -32,8 +32,6 @@ _DOUBLE_CLICK = 0.5  # [s] the second click of a double click does not confirm
 
 @dataclass(frozen=True)
 class Look:
-    """A preview of a column."""
-
     span: str  # least and greatest value, or why the column has no values
     line: Sequence[tuple[float, float]]  # points in a box of 160 x 28, from its upper left corner
 

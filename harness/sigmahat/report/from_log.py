@@ -166,7 +166,6 @@ _FROM = {"prior": "the configuration (prior)", "identify": "identify", "exact": 
 
 
 def curve_table(curve: Curve) -> TextTable:
-    """The stiffness with its interval, the range of the curve, and the polynomial."""
     head, *rows = stiffness_table(curve)
     words = plain_text(polynomial_in_words(curve.polynomial))
     reach = plain_text(reach_in_words(curve))
