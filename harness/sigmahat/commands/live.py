@@ -100,11 +100,8 @@ def live(
 
 def _greeting(session: Session, source: str, targets: Sequence[str], host: str) -> str:
     lines = [f"Messages from {source}; columns {', '.join(session.columns)}; Ctrl-C ends it"]
-    opened = [
-        each
-        for each in (source, *targets)
-        if each.startswith(("tcp:", "foxglove")) or (each == source and each.startswith("udp:"))
-    ]
+    opened = [source] if source.startswith(("udp:", "tcp:")) else []
+    opened += [each for each in targets if each.startswith("foxglove")]
     if opened and not host.startswith("127."):
         lines.append(f"Open to every computer that can connect to {host}: {', '.join(opened)}")
     for joint in session.joints:

@@ -56,9 +56,6 @@ def of_file(title: str, table: pa.Table) -> TextTable:
     import pyarrow as pa
 
     columns = [[number(cell) for cell in column.to_pylist()] for column in table.columns]
-    return TextTable(
-        title,
-        [plain_title(*name_and_unit(name)) for name in table.column_names],
-        list(zip(*columns, strict=True)),
-        [i for i, field in enumerate(table.schema) if pa.types.is_string(field.type)],
-    )
+    head = [plain_title(*name_and_unit(name)) for name in table.column_names]
+    words = [i for i, field in enumerate(table.schema) if pa.types.is_string(field.type)]
+    return TextTable(title, head, list(zip(*columns, strict=True)), words)

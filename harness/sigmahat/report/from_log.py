@@ -129,25 +129,17 @@ def _estimates(signals: EstimateTable, used: NDArray[np.bool_]) -> TextTable:
             cells = [values[-1], *(range_and_rms or [np.nan] * 3)]
             title = plain_title(name, signals.units[name])
             rows.append([title, *(number(float(cell)) for cell in cells)])
-    return TextTable(
-        "Outputs of the estimator",
-        ["", "at the end", "least *", "greatest *", "RMS *"],
-        rows,
-        note="* in the second half",
-        folded=True,
-    )
+    head, note = ["", "at the end", "least *", "greatest *", "RMS *"], "* in the second half"
+    return TextTable("Outputs of the estimator", head, rows, note=note, folded=True)
 
 
 def _doubts(doubts: Counter[str]) -> TextTable:
     """How often the estimator was confident, and why not, in the second half."""
     rows = doubts.total()
     shares = [[item, f"{100 * count / rows:.3g}"] for item, count in doubts.most_common()]
-    return TextTable(
-        "Doubt",
-        ["why not confident", "fraction of rows [%] *"],
-        shares,
-        note="* in the second half; None: it was confident",
-    )
+    head = ["why not confident", "fraction of rows [%] *"]
+    note = "* in the second half; None: it was confident"
+    return TextTable("Doubt", head, shares, note=note)
 
 
 _WORDS = {
@@ -183,12 +175,8 @@ def found_table(sheet: Sheet) -> TextTable:
         unit = "" if each.unit == "1" else plain_unit(each.unit)
         source = _FROM.get(each.interval_from, each.interval_from)
         rows.append([_WORDS.get(name, name), name, number(each.value), unit, interval, source])
-    return TextTable(
-        "Joint and motor",
-        ["", "name", "value", "unit", "95 % interval", "interval from"],
-        rows,
-        words=(0, 1, 3, 5),
-    )
+    head = ["", "name", "value", "unit", "95 % interval", "interval from"]
+    return TextTable("Joint and motor", head, rows, words=(0, 1, 3, 5))
 
 
 def estimator_table(sheet: Sheet) -> TextTable:

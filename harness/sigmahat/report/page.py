@@ -133,13 +133,10 @@ def from_comparison(name: str, folder: Path) -> Contents:
         for group in dict.fromkeys(groups)
     ]
     picture = (folder / name).with_suffix(".png")
-    return Contents(
-        f"Comparison: {folder.resolve().name}",
-        [f"{table.num_rows} rows; mean over {seeds} seed{'s' if seeds > 1 else ''}"],
-        tables,
-        [],
-        pictures=[picture] if picture.is_file() else [],
-    )
+    pictures = [picture] if picture.is_file() else []
+    lines = [f"{table.num_rows} rows; mean over {seeds} seed{'s' if seeds > 1 else ''}"]
+    title = f"Comparison: {folder.resolve().name}"
+    return Contents(title, lines, tables, [], pictures=pictures)
 
 
 def from_sweep(folder: Path) -> Contents:
@@ -155,12 +152,10 @@ def from_sweep(folder: Path) -> Contents:
     if drawn:
         lines.append(f"drawn for each seed: {', '.join(drawn)}")
     columns = summary_columns(sweep)
-    summary = TextTable(
-        "Mean and 95 % interval over the runs",
-        [column.title for column in columns],
-        list(zip(*(column.cells for column in columns), strict=True)),
-        [i for i, column in enumerate(columns) if column.words],
-    )
+    head = [column.title for column in columns]
+    rows = list(zip(*(column.cells for column in columns), strict=True))
+    words = [i for i, column in enumerate(columns) if column.words]
+    summary = TextTable("Mean and 95 % interval over the runs", head, rows, words)
     panels = [*distributions(sweep), *against_parameters(sweep)]
     return Contents(f"Sweep: {folder.resolve().name}", lines, [summary], panels)
 
