@@ -36,7 +36,7 @@ class Served:
     def __init__(self, process: subprocess.Popen[str]) -> None:
         self.process = process
         assert process.stdout is not None
-        self.said = [process.stdout.readline()]
+        process.stdout.readline()  # that the log is open
         self.address = process.stdout.readline().strip()
 
     def interrupt(self) -> tuple[int, str, str]:
