@@ -72,10 +72,5 @@ def write(
 
 
 def _python(project: Path, *arguments: str | Path) -> None:
-    subprocess.run(
-        [sys.executable, *arguments],
-        cwd=project,
-        env={**os.environ, "SOURCE_DATE_EPOCH": _EPOCH},
-        check=True,
-        stdout=subprocess.DEVNULL,
-    )
+    command, given = [sys.executable, *arguments], {**os.environ, "SOURCE_DATE_EPOCH": _EPOCH}
+    subprocess.run(command, cwd=project, env=given, check=True, stdout=subprocess.DEVNULL)

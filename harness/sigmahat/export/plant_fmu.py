@@ -140,12 +140,8 @@ def compile_folder(sources: Path, binary: Path) -> None:
     files = sorted(file.name for file in sources.glob("*.c"))
     arguments = [*FLAGS, f"-I{HEADERS}", *files, "-lm", "-o", str(binary.resolve())]
     try:
-        done = subprocess.run(
-            [*shlex.split(compiler), *arguments],
-            cwd=sources,
-            capture_output=True,
-            text=True,
-        )
+        command = [*shlex.split(compiler), *arguments]
+        done = subprocess.run(command, cwd=sources, capture_output=True, text=True)
     except OSError as error:
         raise RuntimeError(f"CC={compiler}: {error.strerror}") from error
     if done.returncode:

@@ -54,14 +54,13 @@ def from_reproduction(folder: Path) -> Contents:
     of_seeds = f" of {seeds} seeds; the plots show the first" if seeds > 1 else ""
     # The columns that have a value in some row.
     shown = [name for name in table.column_names if table[name].null_count < len(table)]
+    indices = of_file("Performance indices", table.select(shown))
+    quantities = quantity_panels(reduced, main if len(series) > 1 else "")
     return Contents(
         f"Reproduction: {folder.resolve().name}",
         [f"{len(t)} samples{of_seeds}"],
-        [of_file("Performance indices", table.select(shown))],
-        [
-            *stiffness_panels(reduced, estimates),
-            *quantity_panels(reduced, main if len(series) > 1 else ""),
-        ],
+        [indices],
+        [*stiffness_panels(reduced, estimates), *quantities],
         answer=list(over_deformation(series[main], main)),
         notes=sampling(reduced),
         every=reduced.every if reduced.bucket > 1 else None,
@@ -90,14 +89,10 @@ def over_deformation(signals: Signals, estimator: str) -> Iterator[Panel]:
             continue
         for name in ("tau_e", "sigma"):
             words = QUANTITIES[name].words.capitalize()
-            yield Panel(
-                f"{words} against deformation{of_side(side)}, {estimator}",
-                plain_axis("phi"),
-                plain_axis(name),
-                list(_curves(own, name, side)),
-                linked=False,
-                caption=f"last {_LAST * float(signals['t'][-1]):.3g} s",
-            )
+            title = f"{words} against deformation{of_side(side)}, {estimator}"
+            axes, curves = (plain_axis("phi"), plain_axis(name)), list(_curves(own, name, side))
+            caption = f"last {_LAST * float(signals['t'][-1]):.3g} s"
+            yield Panel(title, *axes, curves, linked=False, caption=caption)
 
 
 def _curves(signals: Signals, name: str, side: str) -> Iterator[Curve]:
