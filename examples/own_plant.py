@@ -76,7 +76,6 @@ variables = {
 
 
 def main(folder: Path) -> None:
-    """Make the FMU, run it with the estimator, draw both stiffnesses."""
     fmu = folder / "PendulumPlant.fmu"
     write_plant_fmu(plant, variables, fmu)
     recording = sigmahat.simulate(

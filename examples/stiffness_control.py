@@ -9,9 +9,7 @@ Usage: python stiffness_control.py [FOLDER]     writes stiffness_control.png the
 """
 
 import math
-import shutil
 import sys
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -30,40 +28,6 @@ GAIN = 20.0  # tau_c for an error of one in the square root of the stiffness
 LARGEST = 8.0  # of tau_c, as in the paper [N.m]: up to some 50 N.m/rad in a second
 
 
-class Plant:
-    """AwasPlant.fmu, its variables by name."""
-
-    def __init__(self, start: Mapping[str, float]) -> None:
-        path = str(sigmahat.fmu("AwasPlant"))
-        description: Any = fmpy.read_model_description(path)
-        self._references = {v.name: v.valueReference for v in description.modelVariables}
-        self._folder = fmpy.extract(path)
-        self._fmu: Any = fmpy.instantiate_fmu(self._folder, description, "CoSimulation")
-        self._fmu.setupExperiment(startTime=0.0)
-        self._set(start)
-        self._fmu.enterInitializationMode()
-        self._fmu.exitInitializationMode()
-
-    def _set(self, values: Mapping[str, float]) -> None:
-        self._fmu.setReal([self._references[name] for name in values], list(values.values()))
-
-    def get(self, *names: str) -> list[float]:
-        """Values of variables."""
-        values: list[float] = self._fmu.getReal([self._references[name] for name in names])
-        return values
-
-    def step(self, t: float, tau_c: float) -> None:
-        """From t to t + T, with a constant torque of the secondary motor."""
-        self._set({"tau_c": tau_c})
-        self._fmu.doStep(t, T)
-
-    def close(self) -> None:
-        """Frees the instance."""
-        self._fmu.terminate()
-        self._fmu.freeInstance()
-        shutil.rmtree(self._folder, ignore_errors=True)
-
-
 def wanted(t: float) -> float:
     """Stiffness that is wanted [N.m/rad]."""
     if t < 20:
@@ -73,24 +37,27 @@ def wanted(t: float) -> float:
 
 def run(with_estimate: bool) -> NDArray[np.float64]:
     """One run. Columns: t [s]; commanded, true and estimated stiffness [N.m/rad]; tau_c [N.m]."""
-    plant = Plant({"spring.k_s": 0.85 * K_S, "initial.theta_c": 0.0, **MOTION})
+    plant: Any = sigmahat.fmu("AwasPlant")
+    references = {
+        v.name: v.valueReference for v in fmpy.read_model_description(plant).modelVariables
+    }
+    inputs = ("theta_measured", "q_measured", "tau_measured", "theta_c_measured")
+    measured = [references[name] for name in (*inputs, "sigma")]
     # The torque is exact here, but for noise: no gain error.
     estimator = sigmahat.Estimator(
         {"method": "FilteredRegression", "rls.n": 3, "prior.torque_gain": 0.0}
     )
     correction = 1.0  # of the data sheet, by the last estimate that was confident
     rows = []
-    for k in range(round(DURATION / T)):
-        t = k * T
-        theta, q, theta_c, tau, true = plant.get(
-            "theta_measured", "q_measured", "theta_c_measured", "tau_measured", "sigma"
-        )
-        found = estimator.tick(theta, q, tau, theta_c)
-        estimated = float(found["sigma"])
 
+    def control(t: float, recorder: Any) -> bool:
+        """After each step of the plant: estimates, and sets the torque for the next one."""
+        nonlocal correction
+        theta, q, tau, theta_c, true = recorder.fmu.getReal(measured)
+        found = estimator.tick(theta, q, tau, theta_c)
         nominal = 2 * K_S * (R_0 - LEAD * theta_c) ** 2 * math.cos(2 * (q - theta))  # (29)
         if found["confident"]:
-            correction = estimated / nominal
+            correction = found["sigma"] / nominal
         used = correction * nominal if with_estimate else nominal
         # The square root of the stiffness is linear in the lever arm, and the velocity of the
         # motor nearly in its torque: with a proportional controller the error decays like
@@ -99,10 +66,13 @@ def run(with_estimate: bool) -> NDArray[np.float64]:
         if t >= START:
             error = math.sqrt(wanted(t)) - math.sqrt(max(used, 0.0))
             tau_c = min(max(-GAIN * error, -LARGEST), LARGEST)
-        rows.append((t, wanted(t), true, estimated, tau_c))
+        recorder.fmu.setReal([references["tau_c"]], [tau_c])
+        rows.append((t, wanted(t), true, found["sigma"], tau_c))
+        return True
 
-        plant.step(t, tau_c)
-    plant.close()
+    start = {"spring.k_s": 0.85 * K_S, "initial.theta_c": 0.0, **MOTION}
+    clock = {"stop_time": DURATION, "output_interval": T}
+    fmpy.simulate_fmu(plant, start_values=start, output=["sigma"], step_finished=control, **clock)
     return np.array(rows)
 
 

@@ -64,7 +64,6 @@ class FmuVariables(SphinxDirective):
 
 
 def _groups(causality: str, found: Mapping[str, Any]) -> Iterator[tuple[str, list[Row]]]:
-    """Title and rows of each table."""
     rows = [*found["single"], *(_array(name, each) for name, each in found["arrays"].items())]
     if causality != "parameter":
         yield f"{causality.capitalize()}s", rows
@@ -97,7 +96,6 @@ def _row(cells: Iterable[nodes.Node | list[nodes.Node]]) -> nodes.row:
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
-    """Adds the directive."""
     app.add_object_type(OBJECT, OBJECT, objname="variable")
     app.add_directive("fmu-variables", FmuVariables)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

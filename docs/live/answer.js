@@ -8,10 +8,6 @@ const answer = {
     this.plots = ["log-stiffness", "curve-stiffness", "curve-torque"].map((id) => new Plot(id));
   },
 
-  hide() {
-    document.getElementById("result").hidden = true;
-  },
-
   /** Of a LogEstimate that has run. */
   show(run) {
     const { sigma, sigma_std: std } = run.columns, warning = run.fmu.warnings[0];
@@ -20,53 +16,31 @@ const answer = {
     document.getElementById("result").hidden = false;
     say("answer", inWords(run, curves, warning));
     document.getElementById("answer").scrollIntoView({ block: "nearest" });
-    const half = std.map((each) => NORMAL_95 * each);
-    this.plots[0].draw({
-      x: range(t),
-      y: reach(curves, sigma),
-      bands: [band(t, sigma, half)],
-      lines: [{ x: t, y: sigma, color: "estimate" }],
-    });
-    this.showCurve(this.plots[1], curves, ({ sigma: y, std: s }) => [y, s]);
-    this.showCurve(this.plots[2], curves, ({ torque: y, torqueStd: s }) => [y, s]);
-    const several = curves.length > 1 ? curves : [];
-    for (const { keys } of this.plots.slice(1))
-      keys.replaceChildren(...several.map(({ setPoint }, i) => key(COLORS[i], `set-point ${shortly(setPoint)}`)));
-  },
-
-  showCurve(plot, curves, of) {
-    const all = curves.map((curve) => {
-      const [y, std] = of(curve);
-      return { x: curve.phi, y, half: std.map((each) => NORMAL_95 * each) };
-    });
-    const bands = all.map(({ x, y, half }) => band(x, y, half));
-    plot.draw({
-      x: range(...all.map(({ x }) => x)),
-      y: roomy(range(...bands.flatMap(({ low, high }) => [low, high]))),
-      bands,
-      lines: all.map(({ x, y }, i) => ({ x, y, color: COLORS[i] })),
+    const drawn = (x, y, deviations, color) => ({ x, y, half: deviations.map((each) => NORMAL_95 * each), color });
+    const stiffness = curves.map((curve, i) => drawn(curve.phi, curve.sigma, curve.std, COLORS[i]));
+    const torque = curves.map((curve, i) => drawn(curve.phi, curve.torque, curve.torqueStd, COLORS[i]));
+    const [overTime, ...overDeformation] = this.plots, several = curves.length > 1 ? curves : [];
+    overTime.draw({ x: range(t), y: reach(stiffness, sigma), curves: [drawn(t, sigma, std, "estimate")] });
+    overDeformation.forEach((plot, place) => {
+      const shown = [stiffness, torque][place];
+      plot.draw({ x: range(...shown.map(({ x }) => x)), y: roomy(range(...shown.flatMap(ends))), curves: shown });
+      plot.keys.replaceChildren(...several.map(({ setPoint }, i) => key(COLORS[i], `set-point ${shortly(setPoint)}`)));
     });
   },
 };
 
 /** For the stiffness over time: that of the curves, and that of the second half of the log, if it is not far off. */
 function reach(curves, sigma) {
-  const bands = curves.map(({ sigma: y, std }) => band([], y, std.map((each) => NORMAL_95 * each)));
-  const ends = range(...bands.flatMap(({ low, high }) => [low, high]));
-  const far = 3 * Math.max(...ends.map(Math.abs)), [low, high] = range(sigma.subarray(sigma.length >> 1));
-  const least = Math.min(0, ends[0], Math.max(low, -far)), most = Math.max(0, ends[1], Math.min(high, far));
+  const [lowest, highest] = range(...curves.flatMap(ends)), [low, high] = range(sigma.subarray(sigma.length >> 1));
+  const far = 3 * Math.max(Math.abs(lowest), Math.abs(highest));
+  const least = Math.min(0, lowest, Math.max(low, -far)), most = Math.max(0, highest, Math.min(high, far));
   const [bottom, top] = roomy([1.3 * least, 1.3 * most]);
   return [least < 0 ? bottom : 0, most > 0 ? top : 0];
 }
 
-function band(x, y, half) {
-  return { x, low: y.map((each, i) => each - half[i]), high: y.map((each, i) => each + half[i]), color: "band" };
-}
-
-/** The answer in words. */
 function inWords(run, curves, warning) {
   const values = curves.map(({ phi, sigma, std, doubt, setPoint }) => {
-    const i = nextToZero(phi);
+    const i = phi.reduce((best, value, k) => (Math.abs(value) < Math.abs(phi[best]) ? k : best), 0); // next to 0
     const where = curves.length > 1 ? ` at set-point ${shortly(setPoint)}` : "";
     return `${withBand(sigma[i], NORMAL_95 * std[i])} N·m/rad at ${threeDigits(phi[i])} rad${where} (${confidence(doubt[i])})`;
   });

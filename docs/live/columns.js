@@ -74,7 +74,8 @@ function portOf(quantity, side) {
 }
 
 function meaning(column) {
-  const words = wordsOf(column), unit = unitOf(column);
+  const words = parts(column.replace(/([a-z])([A-Z])/g, "$1 $2")); // motorPos_rad: motor, pos, rad
+  const last = parts(column).at(-1), unit = Object.keys(WORDS.unit).find((each) => WORDS.unit[each].includes(last));
   const says = (group) => Object.keys(WORDS[group]).filter(
     (key) => WORDS[group][key].some((entry) => ` ${words.join(" ")} `.includes(` ${entry} `)));
   const side = ["sensor", "setting", "motor", "link"].find((each) => says("side").includes(each))
@@ -87,17 +88,6 @@ function meaning(column) {
 }
 
 const QUANTITY_OF = { rad: "position", deg: "position", counts: "position", "N.m": "torque", A: "current", s: "time" };
-
-/** motorPos_rad: motor, pos, rad */
-function wordsOf(column) {
-  return parts(column.replace(/([a-z])([A-Z])/g, "$1 $2"));
-}
-
-/** The unit at the end of a name, also in brackets. */
-function unitOf(column) {
-  const last = parts(column).at(-1);
-  return Object.keys(WORDS.unit).find((unit) => WORDS.unit[unit].includes(last));
-}
 
 function parts(column) {
   return column.toLowerCase().replace(/n\.m/g, "nm").split(/[^\p{L}\d]+/u).filter(Boolean);

@@ -96,8 +96,3 @@ function grid(low, high) {
   const even = Array.from({ length: WITHIN }, (_, i) => low + ((high - low) * i) / (WITHIN - 1));
   return Float64Array.from(new Set(low < 0 && high > 0 ? [...even, 0] : even)).sort();
 }
-
-/** Place of the value that is nearest to 0. */
-function nextToZero(values) {
-  return values.reduce((best, value, i) => (Math.abs(value) < Math.abs(values[best]) ? i : best), 0);
-}

@@ -39,12 +39,10 @@ class Fmu {
     this.call("fmi2DoStep", t, h, 1);
   }
 
-  /** Calls one of the functions for this instance. */
   call(name, ...values) {
     if (this.wasm[name](this.component, ...values) > WARNING) throw new Error(this.#explain(name));
   }
 
-  /** Description of a variable. */
   variable(name) {
     const found = this.type.variables[name];
     if (!found) throw new Error(`${this.type.name} has no variable ${name}`);

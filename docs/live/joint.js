@@ -40,7 +40,6 @@ const joint = {
     return Number(this.form.elements[name].value);
   },
 
-  /** A new simulation with the settings. */
   start() {
     try {
       this.simulation = new Simulation(this.plant, this.estimator, this.starts(), SHOWN);
@@ -50,7 +49,7 @@ const joint = {
       say("joint-message", error.message);
     }
     this.due = 0;
-    const names = ["t", "sigma", "tau_e", "sigma_hat", "tau_e_hat", "low", "high"];
+    const names = ["t", "sigma", "tau_e", "sigma_hat", "tau_e_hat", "half"];
     this.history = new Samples(names, Math.round(SECONDS / SCENARIO.T) + 1);
     this.showSettings();
     this.advance(1, Infinity);
@@ -101,11 +100,9 @@ const joint = {
       while (this.simulation && made < samples && performance.now() - begin < most) {
         const { recorded } = this.simulation, t = this.simulation.time;
         this.simulation.advance();
-        const [sigma, torque] = recorded.plant.values;
-        const [estimate, torqueEstimate, std] = recorded.estimator.values;
+        const [estimate, torque, std] = recorded.estimator.values;
         const claims = this.simulation.start.estimator.method === METHODS.FilteredRegression;
-        const half = claims ? NORMAL_95 * std : NaN;
-        this.history.push(t, sigma, torque, estimate, torqueEstimate, estimate - half, estimate + half);
+        this.history.push(t, ...recorded.plant.values, estimate, torque, claims ? NORMAL_95 * std : NaN);
         made += 1;
       }
     } catch (error) {
@@ -126,42 +123,28 @@ const joint = {
 
   show() {
     if (!this.simulation) return;
-    const { history } = this, [t, truth, estimate] = ["t", "sigma", "sigma_hat"].map((n) => history.get(n));
+    const { history } = this, [t, half] = ["t", "half"].map((name) => history.get(name));
     const now = t.at(-1), x = [Math.max(0, now - SECONDS), Math.max(SECONDS, now)];
-    const [low, high] = [history.get("low"), history.get("high")];
-    const [least, most] = reaching(truth, estimate);
-    this.plots[0].draw({
-      x,
-      y: [least < 0 ? roomy([least, most])[0] : 0, roomy([0, 1.3 * most])[1]],
-      bands: [{ x: t, low, high, color: "band" }],
-      lines: [{ x: t, y: truth, color: "true" }, { x: t, y: estimate, color: "estimate" }],
-    });
-    const torque = history.get("tau_e"), torqueEstimate = history.get("tau_e_hat");
-    this.plots[1].draw({
-      x,
-      y: roomy(reaching(torque, torqueEstimate)),
-      lines: [
-        { x: t, y: torque, color: "true" },
-        { x: t, y: torqueEstimate, color: "estimate" },
-      ],
-    });
-    this.showValues(now, truth.at(-1), estimate.at(-1), high.at(-1) - estimate.at(-1));
-  },
-
-  showValues(t, truth, estimate, half) {
-    const [, , , doubt] = this.simulation.recorded.estimator.values;
-    const error = (100 * (estimate - truth)) / truth;
-    say("value-t", `${t.toFixed(2)} s`);
+    const [stiffness, torque] = ["sigma", "tau_e"].map((name) => [
+      { x: t, y: history.get(name), color: "true" },
+      { x: t, y: history.get(`${name}_hat`), color: "estimate" },
+    ]);
+    stiffness[1].half = half;
+    const [least, most] = reaching(...stiffness);
+    const y = [least < 0 ? roomy([least, most])[0] : 0, roomy([0, 1.3 * most])[1]];
+    this.plots[0].draw({ x, y, curves: stiffness });
+    this.plots[1].draw({ x, y: roomy(reaching(...torque)), curves: torque });
+    const [truth, estimate] = stiffness.map((curve) => curve.y.at(-1));
+    say("value-t", `${now.toFixed(2)} s`);
     say("value-true", `${truth.toFixed(1)} N·m/rad`);
-    say("value-sigma", `${withBand(estimate, half)} N·m/rad`);
-    say("value-error", `${shortly(error)} %`);
-    say("value-doubt", confidence(doubt));
+    say("value-sigma", `${withBand(estimate, half.at(-1))} N·m/rad`);
+    say("value-error", `${shortly((100 * (estimate - truth)) / truth)} %`);
+    say("value-doubt", confidence(this.simulation.recorded.estimator.values.at(-1)));
   },
 };
 
 const METHODS = FMUS.StiffnessEstimator.variables.method.items;
 
-/** Writes a text into the page. */
 function say(id, text) {
   document.getElementById(id).textContent = text;
 }

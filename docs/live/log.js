@@ -28,11 +28,10 @@ const log = {
   forget() {
     this.run = null;
     document.getElementById("progress").hidden = true;
-    answer.hide();
+    document.getElementById("result").hidden = true;
     say("log-message", "");
   },
 
-  /** Reads a file, and guesses its columns. */
   async take(file) {
     if (!file) return;
     this.form.hidden = true;
@@ -73,7 +72,6 @@ const log = {
     }));
   },
 
-  /** What is chosen for a port. */
   chosen(port) {
     const field = (name) => this.form.elements[`${port} ${name}`];
     const figure = (name) => (field(name)?.value.trim() ? Number(field(name).value) : NaN);
@@ -134,7 +132,6 @@ const log = {
     return values;
   },
 
-  /** Start values of the estimator. */
   starts({ signals, T }) {
     const values = { ...this.typed() }, { gear } = this.chosen("theta");
     if (gear !== 1) values[GEAR] ??= gear;
@@ -156,7 +153,6 @@ const log = {
     };
   },
 
-  /** Runs the estimator over the log, and shows its answer. */
   async estimate() {
     const bar = document.getElementById("progress");
     this.forget();

@@ -27,9 +27,8 @@ class Plot {
   }
 
   /**
-   * content: x, y: ranges [low, high]
-   *          bands: [{ x, low, high, color }], lines: [{ x, y, color }], arrays of equal size, x
-   *          increasing; color: name of a property in style.css
+   * content: x, y: ranges [low, high]; curves: [{ x, y, half, color }], arrays of equal size, x
+   *          increasing; half: of a band around y, if there is one; color: a property in style.css
    */
   draw(content) {
     this.content = content;
@@ -41,8 +40,8 @@ class Plot {
     pen.beginPath();
     pen.rect(MARGIN.left, MARGIN.top, this.innerWidth, this.innerHeight);
     pen.clip();
-    for (const band of content.bands ?? []) this.#band(band);
-    for (const line of content.lines) this.#line(line);
+    for (const curve of content.curves) if (curve.half) this.#band(curve);
+    for (const curve of content.curves) this.#line(curve);
     pen.restore();
   }
 
@@ -90,12 +89,12 @@ class Plot {
     pen.stroke();
   }
 
-  #band({ x, low, high, color }) {
-    const lower = this.#outline(x, low), upper = this.#outline(x, high);
+  #band(curve) {
+    const [lower, upper] = ends(curve).map((end) => this.#outline(curve.x, end));
     this.pen.beginPath();
     for (const [at, , most] of upper) this.pen.lineTo(at, most);
     for (const [at, least] of lower.reverse()) this.pen.lineTo(at, least);
-    this.pen.fillStyle = this.#color(color);
+    this.pen.fillStyle = this.#color("band");
     this.pen.fill();
   }
 
@@ -157,7 +156,14 @@ class Samples {
 
 /** What a colour stands for. */
 function key(color, text) {
-  return Object.assign(document.createElement("span"), { className: `key ${color}`, textContent: text });
+  const made = Object.assign(document.createElement("span"), { className: `key ${color}`, textContent: text });
+  made.style.setProperty("--key", `var(--${color})`);
+  return made;
+}
+
+/** Both ends of the band of a curve. */
+function ends({ y, half }) {
+  return [y.map((each, i) => each - half[i]), y.map((each, i) => each + half[i])];
 }
 
 /** About so many round numbers in a range, with their labels. */
@@ -167,14 +173,11 @@ function ticks([low, high], count) {
   const step = power * [1, 2, 5, 10].find((factor) => factor * power >= rough);
   const digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
   const found = [];
-  for (let i = Math.ceil(low / step); i * step <= high + 1e-9 * step; i += 1)
-    found.push({ value: i * step, label: label(i * step, digits) });
+  for (let i = Math.ceil(low / step); i * step <= high + 1e-9 * step; i += 1) {
+    const value = i * step, large = Math.abs(value) >= 1e5 || (digits > 4 && value !== 0);
+    found.push({ value, label: large ? shortly(value) : value.toFixed(value ? digits : 0).replace("-", "−") });
+  }
   return found;
-}
-
-function label(value, digits) {
-  const large = Math.abs(value) >= 1e5 || (digits > 4 && value !== 0);
-  return large ? shortly(value) : value.toFixed(value ? digits : 0).replace("-", "−");
 }
 
 /** Smallest and largest of the values that are finite, of several arrays. */
@@ -191,7 +194,7 @@ function range(...arrays) {
 }
 
 /** The range of a truth and of most of an estimate of it, which may be far off for a while. */
-function reaching(truth, estimate) {
+function reaching({ y: truth }, { y: estimate }) {
   const [low, high] = range(truth), most = 2 * (high - low);
   const some = estimate.filter((value, i) => i % 50 === 0 && !Number.isNaN(value)).sort();
   const at = (share) => some[Math.floor(share * (some.length - 1))] ?? low;

@@ -47,15 +47,13 @@ const watch = {
     if (names.length) this.choose(names.includes(chosen) ? chosen : names[0]);
   },
 
-  /** Shows this joint from now on. */
   choose(name) {
     this.field.value = name;
     const id = this.channels.get(name), old = this.subscribed;
     if (old !== null) this.send({ op: "unsubscribe", subscriptionIds: [old] });
     this.subscribed = id;
     this.send({ op: "subscribe", subscriptions: [{ id, channelId: id }] });
-    const names = ["t", "sigma", "sigma_low", "sigma_high", "tau_e", "tau_e_low", "tau_e_high"];
-    this.history = new Samples(names, MOST_SAMPLES);
+    this.history = new Samples(["t", "sigma", "sigma_high", "tau_e", "tau_e_high"], MOST_SAMPLES);
     this.first = this.last = null;
     this.isNew = false;
   },
@@ -84,13 +82,9 @@ const watch = {
     const from = t.findIndex((each) => each > now - WATCHED_SECONDS);
     const x = [Math.max(0, now - WATCHED_SECONDS), Math.max(WATCHED_SECONDS, now)];
     for (const [plot, name] of [[this.plots[0], "sigma"], [this.plots[1], "tau_e"]]) {
-      const [y, low, high] = ["", "_low", "_high"].map((end) => this.history.get(name + end).subarray(from));
-      plot.draw({
-        x,
-        y: roomy(range(y, ...(this.last.confident ? [low, high] : []))),
-        bands: [{ x: t.subarray(from), low, high, color: "band" }],
-        lines: [{ x: t.subarray(from), y, color: "estimate" }],
-      });
+      const [y, high] = ["", "_high"].map((end) => this.history.get(name + end).subarray(from));
+      const curve = { x: t.subarray(from), y, half: high.map((each, i) => each - y[i]), color: "estimate" };
+      plot.draw({ x, y: roomy(range(y, ...(this.last.confident ? ends(curve) : []))), curves: [curve] });
     }
     const { sigma, sigma_high: high, tau_e: torque, tau_e_high: most, doubt } = this.last;
     say("watched-t", `${now.toFixed(1)} s`);

@@ -19,13 +19,8 @@ static sh_measurement z;
 /* The joint of hardware.h with a slow set-point. */
 static void measure(int k)
 {
-    const sh_real count = (sh_real)(6.283185307179586 / 40000);
-    const hardware_sample sample = hardware_read();
-
-    z.theta = count * (sh_real)sample.theta;
-    z.q = count * (sh_real)sample.q;
+    z = hardware_read();
     z.theta_c = 75 + (sh_real)(k % 1000) / 200;
-    z.tau = (sh_real)sample.tau;
 }
 
 static void tick(void)

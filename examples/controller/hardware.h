@@ -4,17 +4,13 @@
 
 #include <stdint.h>
 
-/* One sample of the joint. */
-typedef struct {
-    int32_t theta, q; /* encoders of motor (after its gear) and link, 40000 counts/turn */
-    float tau;        /* torque of the motor, before its gear: from its current [N.m] */
-} hardware_sample;
+#include "sigmahat.h"
 
 /* Calls SysTick_Handler `rate` times per second from now on. */
 void hardware_start_ticks(uint32_t rate);
 
-/* Reads encoders and current. */
-hardware_sample hardware_read(void);
+/* Reads the encoders of motor and link, and the torque of the motor from its current. */
+sh_measurement hardware_read(void);
 
 /* Counts of the clock since this interrupt was due, and counts in one period. */
 uint32_t hardware_elapsed(void);

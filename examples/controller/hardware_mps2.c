@@ -65,18 +65,20 @@ void hardware_enable_interrupts(void)
 /* A motor with the data of the start values that swings by 0.5 rad at 1 Hz, and a transmission
  * of 150 N.m/rad: the motor equation (3) of the paper gives the torque.
  */
-hardware_sample hardware_read(void)
+sh_measurement hardware_read(void)
 {
+    const sh_real count = (sh_real)(6.283185307179586 / 40000); /* of an encoder [rad] */
     const float w = 6.28318531f, B = 2.3e-5f, D_theta = 1e-3f, gamma = 50.0f, sigma = 150.0f;
     const float per_rad = 40000.0f / 6.28318531f;
     const float phase = w * (float)(samples % 1000) / 1000.0f;
     const float theta = 0.5f * sinf(phase), phi = 0.02f * sinf(phase);
-    hardware_sample sample;
-
-    sample.theta = (int32_t)lroundf(theta * per_rad);
-    sample.q = (int32_t)lroundf((theta + phi) * per_rad);
-    sample.tau =
+    const float torque =
         gamma * (D_theta * 0.5f * w * cosf(phase) - B * w * w * theta) - sigma * phi / gamma;
+    sh_measurement z = {0};
+
+    z.theta = count * (sh_real)lroundf(theta * per_rad);
+    z.q = count * (sh_real)lroundf((theta + phi) * per_rad);
+    z.tau = (sh_real)torque;
     ++samples;
-    return sample;
+    return z;
 }

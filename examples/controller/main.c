@@ -22,14 +22,9 @@ void SysTick_Handler(void);
 
 void SysTick_Handler(void)
 {
-    const sh_real count = (sh_real)(6.283185307179586 / 40000);
-    const hardware_sample sample = hardware_read();
-    sh_measurement z = {0};
+    const sh_measurement z = hardware_read();
     uint32_t elapsed;
 
-    z.theta = count * (sh_real)sample.theta;
-    z.q = count * (sh_real)sample.q;
-    z.tau = (sh_real)sample.tau;
     if (sh_estimator_tick(&estimator, &parameters, &z, &estimate)) {
         ++missed; /* a measurement was not finite: the estimate did not change */
     }

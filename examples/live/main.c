@@ -33,7 +33,7 @@ static sh_estimate estimate;
 
 /* Times in classes of a microsecond; the last class has all that are longer. */
 typedef struct {
-    uint32_t count[20001];
+    uint32_t count[20001], total;
 } histogram;
 static histogram late, ticks;
 
@@ -48,22 +48,17 @@ static void add(histogram *h, int64_t ns)
 {
     const int64_t us = ns < 0 ? 0 : ns / 1000;
     h->count[us > 20000 ? 20000 : us]++;
+    h->total++;
 }
 
 /* The time that a share of all does not exceed [us]. */
 static int quantile(const histogram *h, double share)
 {
-    uint64_t total = 0, sum = 0;
-    int us = 0;
-    for (int i = 0; i <= 20000; i++) {
-        total += h->count[i];
-    }
-    for (; us < 20000; us++) {
-        sum += h->count[us];
-        if ((double)sum >= share * (double)total) {
-            break;
-        }
-    }
+    double sum = 0.0;
+    int us = -1;
+    do {
+        sum += h->count[++us];
+    } while (us < 20000 && sum < share * h->total);
     return us + 1;
 }
 

@@ -52,19 +52,13 @@ void sh_joint_start(sh_joint *joint)
 }
 
 void sh_joint_evaluate(const sh_joint *joint, size_t count, const double *phi,
-                       const double *set_point, double *points)
+                       const double *set_point, sh_point *points)
 {
     size_t k;
 
     for (k = 0; k < count; ++k) {
-        sh_point point;
-
         (void)sh_estimator_evaluate(&joint->estimator, &joint->parameters, phi[k], set_point[k],
-                                    &point);
-        points[4 * k] = point.tau_e;
-        points[4 * k + 1] = point.tau_e_std;
-        points[4 * k + 2] = point.sigma;
-        points[4 * k + 3] = point.sigma_std;
+                                    &points[k]);
     }
 }
 

@@ -41,10 +41,10 @@ SH_EXPORT int sh_joint_check(const sh_joint *joint, sh_violation *violation);
 SH_EXPORT void sh_joint_start(sh_joint *joint);
 
 /* Evaluates torque and stiffness at `count` deformations phi [rad] and set-points, by the present
- * estimate: tau_e, tau_e_std, sigma, sigma_std [size: count x 4]. Nothing is learned.
+ * estimate [size: count]. Nothing is learned.
  */
 SH_EXPORT void sh_joint_evaluate(const sh_joint *joint, size_t count, const double *phi,
-                                 const double *set_point, double *points);
+                                 const double *set_point, sh_point *points);
 
 /* Runs a tick for each of the samples first to end - 1 of each joint, joint after joint.
  *

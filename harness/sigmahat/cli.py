@@ -17,13 +17,12 @@ _ERROR, _INTERRUPTED = 2, 130
 _LONGEST = 5000  # characters of an error: more than the names of all parameters
 
 
-@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(
+    context_settings={"help_option_names": ["-h", "--help"]}, epilog="Example: sigmahat reproduce"
+)
 @click.version_option(package_name="sigmahat", message="%(prog)s %(version)s")
 def cli() -> None:
     """Stiffness of robot joints, estimated by FMUs.
-
-    \b
-    Example: sigmahat reproduce
 
     Exit status: 0 done; 1 validate: the logs do not agree,
     check: something is wrong; 2 error, one line on stderr says

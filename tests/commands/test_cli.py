@@ -46,9 +46,7 @@ def test_scenarios_are_listed_one_a_line(shell: Shell) -> None:
 def test_help_has_an_example_that_parses(name: str, shell: Shell) -> None:
     printed = shell.run(f"{name} --help")
     assert shell.err == ""
-    help_ = (cli.commands[name] if name else cli).help or ""
-    (example,) = re.findall(r"Example: sigmahat (.*?)(?:\n\n|$)", help_, re.DOTALL)
-    assert f"Example: sigmahat {example.split()[0]}" in printed
+    (example,) = re.findall(r"Example: sigmahat (.*)\n$", printed)
     first, *arguments = example.split()
     assert first == name or not name
     with cli.commands[first].make_context(first, arguments):

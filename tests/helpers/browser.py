@@ -40,8 +40,6 @@ return [...section.querySelectorAll("tbody tr")]
 
 
 class Page:
-    """A file or an address that is open in the browser."""
-
     def __init__(self, driver: Chrome) -> None:
         self.driver = driver
 

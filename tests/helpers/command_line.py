@@ -45,7 +45,6 @@ class Shell:
         return done.stdout
 
     def json(self, command: str, status: int = 0) -> Any:
-        """The result of a command that gets --json."""
         return json.loads(self.run(f"{command} --json", status))
 
     def refused(self, command: str) -> str:

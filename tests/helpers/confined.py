@@ -35,8 +35,6 @@ _SERVER.set_forkserver_preload(
 
 @dataclass(frozen=True)
 class Done:
-    """How a command ended."""
-
     status: int  # of the exit; negative: the number of the signal that ended it
     out: str
     err: str
@@ -58,7 +56,6 @@ class Done:
 
 
 def run(folder: Path, *arguments: str) -> Done:
-    """Runs `sigmahat` with arguments in a folder."""
     with TemporaryDirectory() as name:
         place = Path(name)
         process = _SERVER.Process(target=_run, args=(folder, arguments, place))

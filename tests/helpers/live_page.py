@@ -28,7 +28,6 @@ for (const [name, value] of Object.entries(arguments[0])) {
 
 
 def csv(columns: Mapping[str, NDArray[np.float64]]) -> str:
-    """A CSV file to drop on the page."""
     text = io.BytesIO()
     pyarrow.csv.write_csv(pa.table(dict(columns)), text)
     return text.getvalue().decode()
@@ -86,7 +85,6 @@ class LivePage:
         return self.text("log-message")
 
     def columns_of_run(self, names: Sequence[str]) -> dict[str, NDArray[np.float64]]:
-        """Outputs of the estimator over the log."""
         script = "return Object.fromEntries(given[0].map((n) => [n, log.run.columns[n]]))"
         return self.arrays(script, names)
 

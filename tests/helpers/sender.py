@@ -1,6 +1,7 @@
 """Messages of a joint that moves a load, as a robot would send them, their configuration, and
 `sigmahat live`, which receives them."""
 
+import json
 import signal
 import socket
 import subprocess
@@ -8,6 +9,8 @@ import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from queue import SimpleQueue
+from threading import Thread
 from typing import Any
 
 import numpy as np
@@ -62,8 +65,25 @@ def messages(samples: int, seed: int = 1) -> list[dict[str, float | int]]:
     return [dict(zip(names, row, strict=True)) for row in rows]
 
 
+class Viewer:
+    """Receives estimates, in a thread, since the system keeps few datagrams."""
+
+    def __init__(self) -> None:
+        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self._socket.bind(("127.0.0.1", 0))
+        self.port = int(self._socket.getsockname()[1])
+        self.received: SimpleQueue[bytes] = SimpleQueue()
+        Thread(target=self._receive, daemon=True).start()
+
+    def _receive(self) -> None:
+        while True:
+            self.received.put(self._socket.recv(65536))
+
+    def next(self) -> Any:
+        return json.loads(self.received.get(timeout=10))
+
+
 def free_port() -> int:
-    """A port of this computer that nobody uses."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         return int(probe.getsockname()[1])

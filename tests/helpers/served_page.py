@@ -36,7 +36,7 @@ class Served:
     def __init__(self, process: subprocess.Popen[str]) -> None:
         self.process = process
         assert process.stdout is not None
-        self.said = [process.stdout.readline()]
+        process.stdout.readline()  # that the log is open
         self.address = process.stdout.readline().strip()
 
     def interrupt(self) -> tuple[int, str, str]:
@@ -56,13 +56,9 @@ def served(*arguments: str, folder: Path, browser: str = "true") -> Iterator[Ser
     """
     command = [sys.executable, "-m", "sigmahat", "open", *arguments]
     environment = {**os.environ, "BROWSER": browser, "PATH": "/bin", "PYTHONUNBUFFERED": "1"}
+    pipe = subprocess.PIPE
     process = subprocess.Popen(
-        command,
-        cwd=folder,
-        env=environment,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
+        command, cwd=folder, env=environment, stdout=pipe, stderr=pipe, text=True
     )
     try:
         yield Served(process)
@@ -83,7 +79,6 @@ class Hand:
         return found
 
     def value(self, name: str) -> str:
-        """What an input shows."""
         return str(self.page.run("return arguments[0].value", self.find(name)))
 
     def types(self, name: str, text: str) -> None:
@@ -91,7 +86,6 @@ class Hand:
         self.find(name).send_keys(Keys.CONTROL, "a", Keys.NULL, text, Keys.TAB)
 
     def chooses(self, name: str, item: str) -> None:
-        """Chooses from a list, by what it shows."""
         Select(self.find(name)).select_by_visible_text(item)
 
     def presses(self, name: str) -> None:
@@ -118,9 +112,7 @@ class Hand:
         self.page.until(is_accepted, f"accept {name}")
 
     def text(self) -> str:
-        """All that the page says."""
         return " ".join(str(self.page.run(_TEXT)).split())
 
     def sees(self, words: str) -> None:
-        """Waits until the page says something."""
         self.page.until(lambda: words in self.text(), words)

@@ -39,7 +39,6 @@ def z() -> Samples:
 
 
 def by_fmu(z: Samples, start: Mapping[str, Any]) -> Samples:
-    """All outputs of the FMU, called from Python."""
     with Fmu(sigmahat.fmu("StiffnessEstimator")) as fmu, Slave(fmu, "one") as slave:
         slave.initialize(start)
         every = [name for name, v in fmu.variables.items() if v.causality == "output"]
@@ -83,12 +82,15 @@ def test_ticks_are_those_of_run_also_in_turns(start: dict[str, Any], z: Samples)
 
 
 def test_many_joints_are_as_many_estimators(z: Samples) -> None:
-    alone = [sigmahat.Estimator(each).run(**z)["sigma"] for each in SETTINGS]
+    single = [sigmahat.Estimator(each) for each in SETTINGS]
+    alone = [each.run(**z)["sigma"] for each in single]
     several = {name: np.tile(each, (len(SETTINGS), 1)) for name, each in z.items()}
     together = sigmahat.Estimator(SETTINGS)
     np.testing.assert_array_equal(together.run(**several)["sigma"], alone)
     assert together.output("sigma").tolist() == [each[-1] for each in alone]
     assert together.eta.shape == (len(SETTINGS), 6, 3)
+    for name, values in together.evaluate([0.0, 0.01]).items():
+        np.testing.assert_array_equal(values, [e.evaluate([0.0, 0.01])[name] for e in single])
     # One mapping: the samples say how many joints there are.
     alike = sigmahat.Estimator(SETTINGS[0])
     np.testing.assert_array_equal(alike.run(**several)["sigma"], [alone[0]] * len(SETTINGS))
@@ -228,18 +230,6 @@ def test_the_estimate_is_evaluated_at_any_deformation(z: Samples) -> None:
     assert np.all(grid["sigma"][:, 1] > grid["sigma"][:, 0])  # a longer lever
     assert np.array_equal(memory, estimator._joints.memory)
     assert estimator.evaluate(np.nan)["sigma_std"] == np.inf
-
-
-def test_many_estimates_are_evaluated_at_the_same_points(z: Samples) -> None:
-    both = [{"method": "FilteredRegression"}, {"method": "Paper2011"}]
-    estimator = sigmahat.Estimator(both)
-    estimator.run(**{name: np.tile(each, (2, 1)) for name, each in z.items()})
-    found = estimator.evaluate([0.0, 0.01])
-    for joint, parameters in enumerate(both):
-        alone = sigmahat.Estimator(parameters)
-        alone.run(**z)
-        for name, values in alone.evaluate([0.0, 0.01]).items():
-            assert np.array_equal(found[name][joint], values)
 
 
 @pytest.mark.parametrize(("given", "warned"), [(0.004, True), (0.02, False), (0.3, True)])

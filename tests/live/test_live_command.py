@@ -9,14 +9,12 @@ import sys
 import time
 from collections.abc import Sequence
 from pathlib import Path
-from queue import SimpleQueue
-from threading import Thread
 from typing import Any
 
 import pytest
 
 from command_line import Shell
-from sender import CONFIGURATION, csv, ended, estimated, free_port, messages, running
+from sender import CONFIGURATION, Viewer, csv, ended, estimated, free_port, messages, running
 from sigmahat.live.session import Session
 from sigmahat.logs.readers.formats import open_log
 
@@ -24,7 +22,6 @@ needs_signals = pytest.mark.skipif(sys.platform == "win32", reason="Windows has 
 
 
 def nested(message: dict[str, Any]) -> bytes:
-    """A message as JSON."""
     motor, link, torque = (message[f"arm/{name}"] for name in ("motor", "link[0]", "torque"))
     arm = {"motor": motor, "link": [link], "torque": torque}
     return json.dumps({"t": message["t"], "arm": arm}).encode()
@@ -33,24 +30,6 @@ def nested(message: dict[str, Any]) -> bytes:
 def recorded(folder: Path) -> Path:
     (recording,) = (folder / "out").glob("*.parquet")
     return recording
-
-
-class Viewer:
-    """Receives estimates, in a thread, since the system keeps few datagrams."""
-
-    def __init__(self) -> None:
-        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        self._socket.bind(("127.0.0.1", 0))
-        self.port = self._socket.getsockname()[1]
-        self._received: SimpleQueue[bytes] = SimpleQueue()
-        Thread(target=self._receive, daemon=True).start()
-
-    def _receive(self) -> None:
-        while True:
-            self._received.put(self._socket.recv(65536))
-
-    def next(self) -> Any:
-        return json.loads(self._received.get(timeout=10))
 
 
 def send(port: int, datagrams: Sequence[bytes]) -> None:

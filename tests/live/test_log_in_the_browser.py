@@ -26,7 +26,6 @@ return Object.fromEntries(log.run.curves().flatMap((curve, i) => Object.entries(
 
 
 def good() -> dict[str, Array]:
-    """Columns of a log without a fault."""
     t = 0.001 * np.arange(200)
     return {"time": t, "theta": np.sin(t), "q": 1.002 * np.sin(t), "tau": 0.05 * np.cos(t)}
 
@@ -248,9 +247,5 @@ def test_what_is_guessed_is_called_so(page: LivePage) -> None:
     assert page.drops(csv({**good(), "q": 1e9 * good()["tau"]})) == ""
     assert page.estimates({"motor.gamma": 50}).endswith("or fill it in.")
     assert "guessed" not in page.estimates({"range.phi": 1e9})
-
-
-def test_a_gear_that_turns_backwards(page: LivePage) -> None:
-    """A negative gear ratio is one: the guess of the largest torque takes its size."""
-    assert page.drops(csv(good())) == ""
-    assert page.estimates({"motor.gamma": -50}) == ""
+    # A negative gear ratio is one: the guess of the largest torque takes its size.
+    assert page.drops(csv(good())) == "" and page.estimates({"motor.gamma": -50}) == ""

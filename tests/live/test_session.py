@@ -41,7 +41,6 @@ def live(
 
 
 def same(ticks: Sequence[Estimated], series: Any) -> None:
-    """Every output of every tick is equal."""
     for name in (*OUTPUTS, "confident", "valid", "doubt"):
         np.testing.assert_array_equal([each.outputs[name] for each in ticks], series[name], name)
 

@@ -16,7 +16,6 @@ ICON = "documentation/icon.svg"
 
 @pytest.fixture(scope="module", params=ESTIMATORS + PLANTS)
 def files(request: pytest.FixtureRequest) -> dict[str, bytes]:
-    """Contents of an FMU by name."""
     with zipfile.ZipFile(sigmahat.fmu(request.param)) as archive:
         return {name: archive.read(name) for name in archive.namelist()}
 

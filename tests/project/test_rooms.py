@@ -22,7 +22,6 @@ def modules() -> dict[str, Path]:
 
 
 def imported(path: Path) -> Iterator[str]:
-    """Names that a file imports, anywhere in it."""
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.ImportFrom) and node.module:
             yield from (f"{node.module}.{alias.name}" for alias in node.names)
@@ -33,7 +32,6 @@ def imported(path: Path) -> Iterator[str]:
 
 @pytest.fixture(scope="module")
 def graph() -> Graph:
-    """What each module imports of this package."""
     files = modules()
     return {name: set(imported(path)) & files.keys() - {name} for name, path in files.items()}
 

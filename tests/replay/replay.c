@@ -75,12 +75,9 @@ int main(int count, char **arguments)
     }
     sh_estimator_start(&estimator, &parameters, &e);
     while (fread(log, sizeof log, 1, in) == 1) {
-        sh_measurement z;
-        z.theta = (sh_real)log[0];
-        z.q = (sh_real)log[1];
-        z.theta_c = (sh_real)log[2];
-        z.tau = (sh_real)log[3];
-        z.tau_e_sensor = (sh_real)log[4];
+        const sh_measurement z = {(sh_real)log[0], (sh_real)log[1], (sh_real)log[2],
+                                  (sh_real)log[3], (sh_real)log[4]};
+
         sh_estimator_tick(&estimator, &parameters, &z, &e);
         if (fwrite(&e, sizeof e, 1, out) != 1) {
             return 3;

@@ -2,6 +2,7 @@
 
 import csv
 import html
+from base64 import b64encode
 from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
@@ -10,11 +11,15 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet
 import pytest
+from PIL import Image
 from selenium.webdriver.common.by import By
 
 from browser import DATA, ROWS, Page, opened
 from command_line import Shell, working_in
 from recorded_logs import CONFIGURATION, awas_log, read_estimate, write_log
+from sigmahat.compare.conditions import JOINTS
+from sigmahat.compare.job import compare
+from sigmahat.compare.table import write
 from sigmahat.logs.panels import reduce
 
 PICTURE = """
@@ -68,7 +73,6 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
 
 @pytest.fixture(scope="module")
 def page() -> Iterator[Page]:
-    """A browser for all reports."""
     with opened("about:blank") as page:
         yield page
 
@@ -142,6 +146,26 @@ def test_a_sweep_has_the_numbers_of_its_summary(results: Callable[[str], Path], 
     own = [row for row in table if row["estimation"] == "RESIDUAL"]
     assert masses == [row["plant.link.M [kg.m2]"] for row in own]
     assert errors == [row["msrep_settled [%]"] for row in own]
+
+
+def test_a_comparison_has_the_numbers_of_its_file_and_fits_a_phone(shell: Shell) -> None:
+    (joint,) = [each for each in JOINTS if each.scenario.name == "single-linear"]
+    write(compare([joint], [1], processes=1), 1, Path("compare.csv"))
+    Image.new("RGB", (1, 1)).save("compare.png")
+    shell.run("report .")
+    lines, file = Path("compare.csv").read_text().splitlines()[1:], Path("report.html").absolute()
+    with opened(file, width=400) as page:
+        assert page.complaints() == []
+        assert page.requests() == [file.as_uri()]
+        assert page.run("return document.documentElement.scrollWidth") <= 400
+        rows = page.run(ROWS, "single transmission")
+        picture = page.run("return document.querySelector('img').src")
+    assert picture.endswith(b64encode(Path("compare.png").read_bytes()).decode())
+    assert len(rows) == len(lines) == 4
+    for row, line in zip(rows, lines, strict=True):
+        group, of, case, method, seeds, _, msrep, *_ = line.split(",")
+        assert (group, seeds) == ("single transmission", "1")
+        assert row.startswith(f"{of} {case} {method}") and f" {float(msrep):.4g} " in row
 
 
 def test_names_are_not_taken_for_html(results: Callable[[str], Path], shell: Shell) -> None:

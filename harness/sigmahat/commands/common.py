@@ -43,6 +43,11 @@ def _for_scripts(context: click.Context, parameter: click.Parameter, given: bool
         logger.setLevel(logging.ERROR)
 
 
+def command(example: str, **more: Any) -> Callable[[Callable[..., object]], click.Command]:
+    """As click.command, with an example at the end of the help."""
+    return click.command(epilog=f"\b\nExample: sigmahat {example}", **more)
+
+
 log_argument = click.argument("log", type=PATH)
 joint_option = click.option(
     "--joint",
@@ -54,8 +59,6 @@ force_option = click.option("--force", is_flag=True, help="Overwrite the file if
 
 
 def config_option(what: str) -> Callable[[_Command], _Command]:
-    """Gives a command with LOG the option --config."""
-
     def path(context: click.Context, _: click.Parameter, given: Path | None) -> Path:
         return given or configuration_of(context.params["log"])
 
@@ -91,16 +94,8 @@ def refuse_to_overwrite(path: Path, force: bool, option: str) -> None:
         raise click.ClickException(text)
 
 
-def opened(log: Path, config: Path, joint: str) -> tuple[Log, Configuration]:
-    """A log, and the configuration of a joint. Raises LogError if a file cannot be read."""
-    from sigmahat.logs.configuration import read_configuration
-    from sigmahat.logs.readers.formats import open_log
-
-    return open_log(log), read_configuration(config, joint)
-
-
 def for_each_joint(
-    log: Path, config: Path, joint: str, job: Callable[[str], _Result]
+    log: Path, config: Path, joint: str, job: Callable[[Log, Configuration], _Result]
 ) -> dict[str, _Result]:
     """Results of a job by joint: of the requested joint, else of each joint of the configuration.
 
@@ -115,22 +110,26 @@ def for_each_joint(
     open_log(log)  # a missing log is reported before a missing configuration
     joints = [joint] if joint else joints_of(read_document(config), config)
     if len(joints) == 1:
-        return {joints[0]: job(joints[0])}
+        return {joints[0]: _of_joint(log, config, joints[0], job, "")}
     from sigmahat.runs.engine import run_all
 
-    jobs = [partial(_with_name, job, joint) for joint in joints]
+    jobs = [partial(_of_joint, log, config, joint, job, f"joint {joint}: ") for joint in joints]
     with progress("Joints", len(joints)) as bar:
         return dict(zip(joints, run_all(jobs, progress=bar.update), strict=True))
 
 
-def _with_name(job: Callable[[str], _Result], joint: str) -> _Result:
-    """The result of a job; its errors name the joint."""
+def _of_joint(
+    log: Path, config: Path, joint: str, job: Callable[[Log, Configuration], _Result], place: str
+) -> _Result:
+    """The result of a job; place begins its errors."""
+    from sigmahat.logs.configuration import read_configuration
     from sigmahat.logs.log import LogError
+    from sigmahat.logs.readers.formats import open_log
 
     try:
-        return job(joint)
+        return job(open_log(log), read_configuration(config, joint))
     except LogError as error:
-        raise LogError(f"joint {joint}: {error}") from error
+        raise LogError(f"{place}{error}") from error
 
 
 def answer_of_joints(texts: Mapping[str, str], values: Mapping[str, object]) -> None:

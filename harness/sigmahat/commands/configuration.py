@@ -15,9 +15,11 @@ if TYPE_CHECKING:
     from sigmahat.checks.findings import Checked
     from sigmahat.guessing.guess import JointGuess
     from sigmahat.identification.quantities import Identified
+    from sigmahat.logs.configuration import Configuration
+    from sigmahat.logs.log import Log
 
 
-@click.command()
+@common.command("init knee.csv")
 @common.log_argument
 @common.config_option("File to write.")
 @click.option(
@@ -34,9 +36,6 @@ def init(log: Path, config: Path, joint: str | None, force: bool) -> None:
     from names and values of the columns. What cannot be guessed is marked with FILL IN.
 
     For a log of several joints, the file has a section for each joint, and common values once.
-
-    \b
-    Example: sigmahat init knee.csv
     """
     from sigmahat.files.output import write_whole
     from sigmahat.guessing import template
@@ -87,7 +86,7 @@ def _guessed(joint: JointGuess) -> Iterator[str]:
     yield ""
 
 
-@click.command("open")
+@common.command("open knee.csv", name="open")
 @common.log_argument
 @common.config_option("File to start from and to write.")
 @click.option(
@@ -101,9 +100,6 @@ def open_page(log: Path, config: Path, port: int) -> None:
 
     The page is served on this computer alone, at an address with a token, until Ctrl-C. The page
     writes the same file as `sigmahat init`.
-
-    \b
-    Example: sigmahat open knee.csv
     """
     from sigmahat.logs.configuration import read_document
     from sigmahat.logs.readers.formats import open_log
@@ -119,7 +115,7 @@ def open_page(log: Path, config: Path, port: int) -> None:
         click.echo(f"  sigmahat open {log} --config {draft}")
 
 
-@click.command()
+@common.command("check knee.csv --config knee.toml")
 @common.log_argument
 @common.config_option("File from `sigmahat init`.")
 @common.joint_option
@@ -129,27 +125,19 @@ def check(log: Path, config: Path, joint: str) -> int:
 
     Errors of signs, units, gear ratios, zeros and delays are found. What no log can show is listed.
     Exit status: 0 if nothing contradicts the log, 1 if something does.
-
-    \b
-    Example: sigmahat check knee.csv --config knee.toml
     """
+    from sigmahat.checks.check import check
     from sigmahat.checks.findings import as_dict
     from sigmahat.checks.text import summary
 
     with common.errors_in_one_line(config, "--config"):
-        checked = common.for_each_joint(log, config, joint, partial(_checked, log, config))
+        checked = common.for_each_joint(log, config, joint, check)
     texts = {name: f"{log} with {config}\n{summary(each)}" for name, each in checked.items()}
     common.answer_of_joints(texts, {name: as_dict(each) for name, each in checked.items()})
     return 1 if any(each.is_wrong for each in checked.values()) else 0
 
 
-def _checked(log: Path, config: Path, joint: str) -> Checked:
-    from sigmahat.checks.check import check
-
-    return check(*common.opened(log, config, joint))
-
-
-@click.command()
+@common.command("identify knee.csv --config knee.toml")
 @common.log_argument
 @common.config_option("File to read and to update.")
 @common.joint_option
@@ -164,9 +152,6 @@ def identify(log: Path, config: Path, joint: str, torque_constant: bool, dry_run
     """Identify B, D_theta and Coulomb friction from LOG; write them into the configuration.
 
     A value that the motion does not determine is not written, but reported. Comments are kept.
-
-    \b
-    Example: sigmahat identify knee.csv --config knee.toml
     """
     import tomlkit
 
@@ -180,7 +165,7 @@ def identify(log: Path, config: Path, joint: str, torque_constant: bool, dry_run
 
     texts, values = {}, {}
     with common.errors_in_one_line(config, "--config"):
-        job = partial(_identified, log, config, torque_constant, dry_run)
+        job = partial(_identified, torque_constant, dry_run)
         every = common.for_each_joint(log, config, joint, job)
         document = read_document(config)
         for name, (found, checked) in every.items():
@@ -196,19 +181,17 @@ def identify(log: Path, config: Path, joint: str, torque_constant: bool, dry_run
 
 
 def _identified(
-    log: Path, config: Path, torque_constant: bool, dry_run: bool, joint: str
+    torque_constant: bool, dry_run: bool, log: Log, before: Configuration
 ) -> tuple[Identified, Checked]:
     """The identified values of a joint, and the checks with these values; no file is written."""
     from sigmahat.checks.check import check_identified
     from sigmahat.identification.identify import identify
     from sigmahat.identification.write import update
     from sigmahat.logs.configuration import checked_configuration, read_document
-    from sigmahat.logs.readers.formats import open_log
 
-    opened, document = open_log(log), read_document(config)
-    before = checked_configuration(document, config, joint)
-    found = identify(opened, before, torque_constant)
+    document = read_document(before.path)
+    found = identify(log, before, torque_constant)
     if not dry_run:
-        update(document, found, joint)
-    after = checked_configuration(document, config, joint)
-    return found, check_identified(opened, before, after)
+        update(document, found, before.joint)
+    after = checked_configuration(document, before.path, before.joint)
+    return found, check_identified(log, before, after)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from sigmahat.live.watch import Inbox
 
 
-@click.command()
+@common.command("live knee.toml --from udp:9870 --to udp:9871")
 @click.argument("config", type=common.FILE)
 @common.option(
     "--from",
@@ -64,9 +64,6 @@ def live(
 
     CONFIG is the configuration of a log of the robot, with the columns of the messages. Messages
     are recorded as a log, from which `sigmahat estimate` computes the same estimates.
-
-    \b
-    Example: sigmahat live knee.toml --from udp:9870 --to udp:9871
     """
     from sigmahat.files.output import created_folder
     from sigmahat.live.endpoints import Endpoints
@@ -102,13 +99,9 @@ def live(
 
 
 def _greeting(session: Session, source: str, targets: Sequence[str], host: str) -> str:
-    """Lines about the source of messages, the open ports, and the assumed settings."""
     lines = [f"Messages from {source}; columns {', '.join(session.columns)}; Ctrl-C ends it"]
-    opened = [
-        each
-        for each in (source, *targets)
-        if each.startswith(("tcp:", "foxglove")) or (each == source and each.startswith("udp:"))
-    ]
+    opened = [source] if source.startswith(("udp:", "tcp:")) else []
+    opened += [each for each in targets if each.startswith("foxglove")]
     if opened and not host.startswith("127."):
         lines.append(f"Open to every computer that can connect to {host}: {', '.join(opened)}")
     for joint in session.joints:

@@ -34,13 +34,14 @@ def _limit(name: str, text: str) -> click.Option:
     return click.Option([f"--{name}"], type=_POSITIVE, required=True, help=text)
 
 
-@click.command(
+@common.command(
+    "motion --angle 1 --velocity 2 --torque 100 --deformation 0.02",
     params=[
         _limit("angle", "Largest distance from the start position [rad]."),
         _limit("velocity", "Largest velocity [rad/s]."),
         _limit("torque", "Largest torque of the motor at the gear output [N.m]."),
         _limit("deformation", "Largest deformation of the transmission [rad]."),
-    ]
+    ],
 )
 @click.argument("config", required=False, type=common.FILE)
 @common.option("--seconds", type=_Number(5, 600), default=30.0, help="Duration of the motion.")
@@ -76,9 +77,6 @@ def motion(
     The set has joints that fit the limits or, with --after, joints that fit the log. The motion
     stays below resonance, begins and ends at rest, and is written as CSV, as a trajectory for ROS,
     and as C. CONFIG gives gear ratio, encoders and noise.
-
-    \b
-    Example: sigmahat motion --angle 1 --velocity 2 --torque 100 --deformation 0.02
     """
     from sigmahat.files.output import output_folder
     from sigmahat.logs.configuration import read_configuration

@@ -15,11 +15,13 @@ from sigmahat.commands import common
 
 if TYPE_CHECKING:
     from sigmahat.checks.findings import Checked
+    from sigmahat.logs.configuration import Configuration
     from sigmahat.logs.estimate import Estimate
+    from sigmahat.logs.log import Log
     from sigmahat.validation.validate import Validation
 
 
-@click.command()
+@common.command("estimate knee.parquet --config knee.toml --out knee")
 @common.log_argument
 @common.config_option("File from `sigmahat init`.")
 @common.out_option("Folder for table and figure.", "{log}")
@@ -50,9 +52,6 @@ def estimate(
     (estimate.curve.csv) and a figure. Also writes a data sheet of the joint
     (joint.json) for `sigmahat export`, and what was learned (state.json) for --start-from.
     With several joints, each joint has its own folder, and a row in joints.csv.
-
-    \b
-    Example: sigmahat estimate knee.parquet --config knee.toml --out knee
     """
     from sigmahat.checks.findings import as_dict
     from sigmahat.checks.text import IN_LOG
@@ -63,7 +62,7 @@ def estimate(
     if to is not None:
         import_module("mcap")  # report a missing package before the work
     with common.errors_in_one_line(out):
-        job = partial(_estimated, log, config, out, start_from, to)
+        job = partial(_estimated, out, start_from, to)
         found = common.for_each_joint(log, config, joint, job)
         if len(found) > 1:
             write_joints({name: each for name, (each, _) in found.items()}, out)
@@ -83,7 +82,7 @@ def estimate(
 
 
 def _estimated(
-    log: Path, config: Path, out: Path, start_from: Path | None, to: str | None, joint: str
+    out: Path, start_from: Path | None, to: str | None, log: Log, configuration: Configuration
 ) -> tuple[Estimate, Checked]:
     """Writes the files of a joint. Returns its estimate and the result of the checks."""
     from sigmahat.checks.check import check
@@ -91,15 +90,14 @@ def _estimated(
     from sigmahat.files.output import output_folder
     from sigmahat.logs import estimate as job
 
-    opened, configuration = common.opened(log, config, joint)
     # The figure needs this import, which can run meanwhile: the replay is mostly C code.
     Thread(target=_import, args=["matplotlib.figure"]).start()
-    checked = check(opened, configuration)
+    checked, own = check(log, configuration), out / configuration.joint
     if start_from is not None and start_from.is_dir():
-        start_from /= joint
-    with common.progress("Replaying", 1000) as bar, output_folder(out / joint) as folder:
+        start_from /= configuration.joint
+    with common.progress("Replaying", 1000) as bar, output_folder(own) as folder:
         result = job.estimate(
-            opened, configuration, folder, bar.update, start_from, to == "mcap", rows(checked)
+            log, configuration, folder, bar.update, start_from, to == "mcap", rows(checked)
         )
     return result, checked
 
@@ -110,7 +108,7 @@ def _import(module: str) -> None:
         import_module(module)
 
 
-@click.command()
+@common.command("validate second.csv --with knee.toml")
 @common.log_argument
 @click.option(
     "--with",
@@ -131,27 +129,23 @@ def validate(log: Path, config: Path, start_from: Path | None, joint: str) -> in
 
     LOG is replayed with the learned stiffness, and without. Exit status: 0 if the logs agree, 1 if
     the logs disagree or decide nothing.
-
-    \b
-    Example: sigmahat validate second.csv --with knee.toml
     """
     from sigmahat.validation.validate import summary
 
     start_from = start_from or Path("sigmahat-results", config.stem)
     with common.errors_in_one_line(start_from, "--start-from"):
-        job = partial(_validated, log, config, start_from)
+        job = partial(_validated, start_from)
         found = common.for_each_joint(log, config, joint, job)
     texts = {name: summary(each) for name, each in found.items()}
     common.answer_of_joints(texts, {name: each.as_dict() for name, each in found.items()})
     return 0 if all(each.agree for each in found.values()) else 1
 
 
-def _validated(log: Path, config: Path, start_from: Path, joint: str) -> Validation:
+def _validated(start_from: Path, log: Log, configuration: Configuration) -> Validation:
     from sigmahat.validation.validate import validate
 
-    if start_from.is_dir():
-        start_from /= joint
-    return validate(*common.opened(log, config, joint), start_from)
+    learned = start_from / configuration.joint if start_from.is_dir() else start_from
+    return validate(log, configuration, learned)
 
 
 _START_VALUES = {"ssv": ".ssv", "matlab": ".m", "modelica": ".mo"}
@@ -159,7 +153,7 @@ _MODELS = {"mjcf": ".xml", "sdf": ".sdf", "urdf": ".urdf", "drake": ".drake.sdf"
 _SUFFIXES = {**_START_VALUES, **_MODELS}
 
 
-@click.command()
+@common.command("export sigmahat-results/knee --to mjcf")
 @click.argument("sheet", type=common.PATH)
 @click.option(
     "--to",
@@ -181,9 +175,6 @@ def export(sheet: Path, to: str, out: Path | None, force: bool) -> None:
     SHEET is the joint.json that `sigmahat estimate` wrote, or its folder. An FMU with these start
     values begins with the stiffness that was learned. The joint has two hinges, motor and
     flexibility, with the intervals of all parameters.
-
-    \b
-    Example: sigmahat export sigmahat-results/knee --to mjcf
     """
     from sigmahat.fmi.instance import installed
     from sigmahat.joint import parameter_file
@@ -204,7 +195,7 @@ def export(sheet: Path, to: str, out: Path | None, force: bool) -> None:
     common.answer(text)
 
 
-@click.command()
+@common.command("report sigmahat-results/table1")
 @click.argument("folder", type=common.PATH)
 @click.option("--out", type=common.FILE, help="File to write.  [default: report.html in FOLDER]")
 @common.quiet_option
@@ -213,9 +204,6 @@ def report(folder: Path, out: Path | None) -> None:
 
     FOLDER is what `sigmahat reproduce`, `estimate`, `sweep` or `compare` wrote. The file opens
     offline.
-
-    \b
-    Example: sigmahat report sigmahat-results/table1
     """
     from sigmahat.files.output import write_whole
     from sigmahat.report.page import report as make

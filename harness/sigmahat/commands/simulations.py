@@ -14,7 +14,7 @@ def _names(_: click.Context, __: click.Parameter, begin: str) -> list[str]:
     return [name for name in SCENARIOS if name.startswith(begin)]
 
 
-@click.command()
+@common.command("reproduce --scenario as-printed --seeds 20 --out as-printed")
 @common.option("--scenario", default="table1", shell_complete=_names, help="What to run.")
 @common.option(
     "--seeds", default=1, type=common.COUNT, help="Number of runs, each with other noise."
@@ -22,11 +22,7 @@ def _names(_: click.Context, __: click.Parameter, begin: str) -> list[str]:
 @common.out_option("Folder for figures and CSV files.", "{scenario}")
 @common.answer_options
 def reproduce(scenario: str, seeds: int, out: Path) -> None:
-    """Run a scenario; print its table, draw its figures.
-
-    \b
-    Example: sigmahat reproduce --scenario as-printed --seeds 20 --out as-printed
-    """
+    """Run a scenario; print its table, draw its figures."""
     from sigmahat.files.output import output_folder
     from sigmahat.paper.reproduction import as_dict, conditions, reproduce, table, write_results
     from sigmahat.runs.metrics import MSREP_IN_WORDS
@@ -55,7 +51,7 @@ def reproduce(scenario: str, seeds: int, out: Path) -> None:
     )
 
 
-@click.command()
+@common.command("compare --seeds 20 --out compare")
 @click.option(
     "--misfits",
     is_flag=True,
@@ -72,11 +68,7 @@ def reproduce(scenario: str, seeds: int, out: Path) -> None:
 @common.out_option("Folder for figure and CSV file.", "compare")
 @common.answer_options
 def compare(misfits: bool, seeds: int, jobs: int | None, out: Path) -> None:
-    """Compare the estimation methods on joints with wrong motor data.
-
-    \b
-    Example: sigmahat compare --seeds 20 --out compare
-    """
+    """Compare the estimation methods on joints with wrong motor data."""
     (_misfits if misfits else _methods)(seeds, jobs, out)
 
 
@@ -147,14 +139,10 @@ def _counted(seeds: int) -> str:
     return f"{seeds} seed{'s' if seeds > 1 else ''}"
 
 
-@click.command()
+@common.command("scenarios --json")
 @common.json_option
 def scenarios() -> None:
-    """List the scenarios.
-
-    \b
-    Example: sigmahat scenarios --json
-    """
+    """List the scenarios."""
     from sigmahat.paper.scenarios import SCENARIOS
 
     width = max(map(len, SCENARIOS)) + 2
@@ -169,7 +157,10 @@ def _listed(_: click.Context, __: click.Parameter, text: str | None) -> tuple[st
     return tuple(name.strip() for name in text.split(",")) if text else ()
 
 
-@click.command()
+@common.command(
+    "sweep --seeds 100 --modality RESIDUAL "
+    "--set estimator.motor.D_theta=0.9e-3:1.1e-3:5 --out friction"
+)
 @click.argument("plan", required=False, type=common.FILE)
 @click.option("--scenario", callback=_listed, help="One or more, a,b.  [default: table1]")
 @click.option("--seeds", type=common.COUNT, help="Number of runs of each setting.  [default: 1]")
@@ -201,10 +192,6 @@ def sweep(
     PLAN is a TOML file with the keys scenario, seeds, modality and a table [parameters]; options
     replace these keys. After an interruption, the same command does the missing runs; with more
     seeds, only the runs of the new seeds.
-
-    \b
-    Example: sigmahat sweep --seeds 100 --modality RESIDUAL \\
-        --set estimator.motor.D_theta=0.9e-3:1.1e-3:5 --out friction
     """
     from sigmahat.sweep.job import sweep as run
     from sigmahat.sweep.plan import read_plan

@@ -36,16 +36,13 @@ def _inlined(file: Path, folders: list[Path], done: set[Path]) -> str:
     if file in done:
         return ""
     done.add(file)
-    text = _OWN_INCLUDE.sub(
-        lambda match: _inlined(_found(match[1], folders), folders, done),
-        file.read_text(encoding="utf-8"),
-    )
+
+    def header(match: re.Match[str]) -> str:
+        for folder in folders:
+            if (folder / match[1]).is_file():
+                return _inlined(folder / match[1], folders, done)
+        expected = ", ".join(map(str, folders))
+        raise FileNotFoundError(f"header {match[1]}: expected in one of {expected}")
+
+    text = _OWN_INCLUDE.sub(header, file.read_text(encoding="utf-8"))
     return f"\n/* ---- {file.name} ---- */\n\n{text}"
-
-
-def _found(name: str, folders: list[Path]) -> Path:
-    """The header of this name. Raises ``FileNotFoundError`` if no folder has this header."""
-    for folder in folders:
-        if (folder / name).is_file():
-            return folder / name
-    raise FileNotFoundError(f"header {name}: expected in one of {', '.join(map(str, folders))}")

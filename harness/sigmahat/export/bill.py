@@ -48,11 +48,13 @@ def write(out: Path, release: Path, version: str) -> None:
     packages = list(_packages(files))
     for each in (headers, own, equations, *packages):
         bom.components.add(each)
-    made = [_file(file, release) for file in files]
-    for file, entry in zip(files, made, strict=True):
+    for file in files:
+        name = file.relative_to(release).as_posix()
+        entry = _component(name, None, ComponentType.FILE, None)
+        entry.hashes.add(HashType(alg=HashAlgorithm.SHA_256, content=sha256(file)))
         bom.components.add(entry)
+        bom.register_dependency(product, [entry])
         bom.register_dependency(entry, _contents(file, own, headers, equations, packages))
-    bom.register_dependency(product, made)
     digest = hashlib.sha256("".join(map(sha256, files)).encode()).hexdigest()
     bom.serial_number = uuid5(NAMESPACE_URL, f"sigmahat {version} {digest}")
     bom.metadata.timestamp = None  # type: ignore[assignment] # the schema does not ask for one
@@ -80,13 +82,6 @@ def _tool(name: str) -> Component:
     return tool
 
 
-def _file(file: Path, release: Path) -> Component:
-    name = file.relative_to(release).as_posix()
-    entry = _component(name, None, ComponentType.FILE, None)
-    entry.hashes.add(HashType(alg=HashAlgorithm.SHA_256, content=sha256(file)))
-    return entry
-
-
 def _packages(files: Iterable[Path]) -> Iterable[Component]:
     """Packages that pip installs with a wheel; extras are optional. pip decides on the versions."""
     wheel = next((file for file in files if file.suffix == ".whl"), None)
@@ -94,14 +89,13 @@ def _packages(files: Iterable[Path]) -> Iterable[Component]:
         raise FileNotFoundError("the release has no wheel; make it before its bill of materials")
     (packed,) = distributions(path=[str(wheel)])
     for requirement in packed.requires or ():
-        package = re.match(r"[\w.-]+", requirement)
-        assert package is not None
+        package = re.split(r"[^\w.-]", requirement)[0]
         yield Component(
-            name=package[0],
+            name=package,
             type=ComponentType.LIBRARY,
             bom_ref=requirement,
             scope=ComponentScope.OPTIONAL if "extra ==" in requirement else ComponentScope.REQUIRED,
-            purl=PackageURL("pypi", name=package[0].lower()),
+            purl=PackageURL("pypi", name=package.lower()),
             properties=[Property(name="sigmahat:requirement", value=requirement)],
         )
 

@@ -45,12 +45,9 @@ def compile_files(target: str, arguments: Iterable[str | Path], cache: Path, cwd
     ``subprocess.CalledProcessError`` if the compiler fails; the compiler prints why on stderr.
     """
     folder = str(cache.resolve())
-    subprocess.run(
-        [sys.executable, "-m", "ziglang", "cc", "-target", target, *arguments],
-        cwd=cwd,
-        env={**os.environ, "ZIG_GLOBAL_CACHE_DIR": folder, "ZIG_LOCAL_CACHE_DIR": folder},
-        check=True,
-    )
+    caches = {"ZIG_GLOBAL_CACHE_DIR": folder, "ZIG_LOCAL_CACHE_DIR": folder}
+    command = [sys.executable, "-m", "ziglang", "cc", "-target", target, *arguments]
+    subprocess.run(command, cwd=cwd, env={**os.environ, **caches}, check=True)
 
 
 def source_files(folder: Path) -> list[Path]:

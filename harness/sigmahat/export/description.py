@@ -106,6 +106,7 @@ def write_completed(root: Element, struct: str, storage: str, xml: Path, table: 
 
 
 def _write_xml(root: Element, file: Path) -> None:
+    ElementTree.indent(root)
     ElementTree.ElementTree(root).write(file, encoding="UTF-8", xml_declaration=True)
 
 
@@ -164,7 +165,6 @@ def for_fmi3(root: Element) -> Element:
         categories.remove(categories.findall("Category[@name='logStatusDiscard']")[0])
     made.append(_model_variables(root))
     made.append(_model_structure(root))
-    ElementTree.indent(made)
     return made
 
 
@@ -193,14 +193,13 @@ def _model_structure(root: Element) -> Element:
 
 def build_description(identifier: str, sources: Sequence[str]) -> Element:
     """``sources/buildDescription.xml``: the C files that an importer has to compile."""
-    root = Element("fmiBuildDescription", fmiVersion="3.0")
-    about = {"modelIdentifier": identifier, "description": "C99"}
-    configuration = SubElement(root, "BuildConfiguration", about)
-    files = SubElement(configuration, "SourceFileSet", language="C99")
-    for source in sources:
-        SubElement(files, "SourceFile", name=source)
-    ElementTree.indent(root)
-    return root
+    files = "".join(f'<SourceFile name="{source}"/>' for source in sources)
+    return ElementTree.fromstring(
+        '<fmiBuildDescription fmiVersion="3.0">'
+        f'<BuildConfiguration modelIdentifier="{identifier}" description="C99">'
+        f'<SourceFileSet language="C99">{files}</SourceFileSet>'
+        "</BuildConfiguration></fmiBuildDescription>"
+    )
 
 
 def terminals_and_icons(root: Element) -> Element:
@@ -215,23 +214,16 @@ def terminals_and_icons(root: Element) -> Element:
     corners = {"x1": "-100", "y1": "-100", "x2": "100", "y2": "100"}
     SubElement(shown, "CoordinateSystem", corners, suggestedScalingFactorTo_mm="0.1")
     SubElement(shown, "Icon", corners)
-    members = dict(_measurements(root))
+    listed = [(v.attrib["causality"], v.attrib["name"]) for v in variables(root)]
+    measured = [name for kind, name in listed if kind == "output" and "_measured" in name]
+    members = measured or [name for kind, name in listed if kind == "input"]
     if members:
         about = {"name": "measurements", "matchingRule": "bus"}
         about["terminalKind"] = "org.sigmahat.measurements"
         about["description"] = "Measured positions and torques of the joint"
         terminal = SubElement(SubElement(made, "Terminals"), "Terminal", about)
-        for name, member in members.items():
+        for name in members:
+            member = name.replace("_measured" if measured else "_sensor", "")
             about = {"variableName": name, "memberName": member, "variableKind": "signal"}
             SubElement(terminal, "TerminalMemberVariable", about)
-    ElementTree.indent(made)
     return made
-
-
-def _measurements(root: Element) -> list[tuple[str, str]]:
-    """Variables of the terminal and their member names."""
-    names = [(v.attrib["causality"], v.attrib["name"]) for v in variables(root)]
-    measured = [name for kind, name in names if kind == "output" and "_measured" in name]
-    if measured:
-        return [(name, name.replace("_measured", "")) for name in measured]
-    return [(name, name.replace("_sensor", "")) for kind, name in names if kind == "input"]

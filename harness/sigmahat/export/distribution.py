@@ -59,25 +59,18 @@ def write(
         folder.mkdir()
         for each in contents:
             shutil.copy(each, folder)
-        for platform, tag in TAGS.items():
+        for platform in PLATFORMS:
             stem = folder / "sigmahat_native"
             library = compile_shared(sources, includes, stem, platform, cache)
             _python(project, "-m", "wheel", "pack", tree, "--dest-dir", scratch)
             (packed,) = Path(scratch).glob("*.whl")
-            _python(project, "-m", "wheel", "tags", "--remove", "--platform-tag", tag, packed)
+            tag = ("--platform-tag", TAGS[platform])
+            _python(project, "-m", "wheel", "tags", "--remove", *tag, packed)
             (tagged,) = Path(scratch).glob("*.whl")
             shutil.move(tagged, out)
             library.unlink()
 
 
 def _python(project: Path, *arguments: str | Path) -> None:
-    subprocess.run(
-        [sys.executable, *arguments],
-        cwd=project,
-        env={**os.environ, "SOURCE_DATE_EPOCH": _EPOCH},
-        check=True,
-        stdout=subprocess.DEVNULL,
-    )
-
-
-assert TAGS.keys() == PLATFORMS.keys()
+    command, given = [sys.executable, *arguments], {**os.environ, "SOURCE_DATE_EPOCH": _EPOCH}
+    subprocess.run(command, cwd=project, env=given, check=True, stdout=subprocess.DEVNULL)

@@ -29,17 +29,17 @@ class Elimination:
             self._rows[row][column] = matrix[row, column]
         self._order: list[int] = []
         rest = set(range(size))
+
+        def fill_in(pivot: int) -> int:
+            """Bound on the entries that become nonzero."""
+            in_row = len(self._rows[pivot].keys() & rest)
+            return (in_row - 1) * (sum(pivot in self._rows[i] for i in rest) - 1)
+
         while rest:
-            pivot = min(rest, key=lambda k: (self._fill_in(k, rest), k))
+            pivot = min(rest, key=lambda k: (fill_in(k), k))
             rest.remove(pivot)
             self._order.append(pivot)
             self._eliminate(pivot, rest)
-
-    def _fill_in(self, pivot: int, rest: set[int]) -> int:
-        """Bound on the entries that become nonzero."""
-        in_row = len(self._rows[pivot].keys() & rest)
-        in_column = sum(pivot in self._rows[i] for i in rest)
-        return (in_row - 1) * (in_column - 1)
 
     def _eliminate(self, pivot: int, rest: set[int]) -> None:
         """Keeps 1/pivot on the diagonal, and the multipliers below the diagonal."""
@@ -138,18 +138,17 @@ def write(
     folder: Path,
 ) -> None:
     """Write the C code of a plant into a folder; variables as in `functions`."""
-    generated = functions(plant, parameters, inputs, outputs)
-    by_name = {function.name(): function for function in generated}
+    generated = {each.name(): each for each in functions(plant, parameters, inputs, outputs)}
     generator = ca.CodeGenerator(
         "plant_functions", {"casadi_int": "int", "with_export": False, "verbose": False}
     )
-    for function in generated:
+    for function in generated.values():
         generator.add(function)
-    factors = by_name["sh_plant_factorize"].numel_out(0)
+    factors = generated["sh_plant_factorize"].numel_out(0)
     scales = ", ".join(repr(state.scale) for state in plant.states.values())
     declared = "\n".join(
         f"int {name}(const double **arg, double **res, int *iw, double *w, int mem);"
-        for name in by_name
+        for name in generated
     )
     header = f"""\
 /* Generated from the equations of {plant.name}; do not edit. */

@@ -85,8 +85,6 @@ def _check(
 def _list_variables(
     plant: PlantEquations, variables: Mapping[str, PlantVariable], listed: Element
 ) -> None:
-    """Fills the element ModelVariables."""
-
     def add(name: str, causality: str, **attributes: str) -> None:
         variable = variables[name]
         element = ElementTree.SubElement(listed, "ScalarVariable", name=name, causality=causality)
@@ -105,7 +103,10 @@ def _list_variables(
         # The variables on which the initial value of the output depends.
         symbols = (s.name() for s in ca.symvar(ca.substitute(expression, x, start)))
         depends = sorted({SEED if s in noise else s for s in symbols})
-        discrete = _has_steps(expression) or SEED in depends
+        # Rounding, for example of an encoder, makes steps.
+        function = ca.Function("output", ca.symvar(expression), [expression])
+        operations = map(function.instruction_id, range(function.n_instructions()))
+        discrete = ca.OP_FLOOR in operations or SEED in depends
         variability, on = "discrete" if discrete else "continuous", " ".join(depends)
         add(name, "output", variability=variability, initial="calculated", depends=on)
     # Start values of states depend on these.
@@ -127,12 +128,6 @@ _NOISE = f"""<ModelVariables>
 </ModelVariables>"""
 
 
-def _has_steps(expression: ca.SX) -> bool:
-    """Whether the expression contains rounding, for example of an encoder."""
-    function = ca.Function("output", ca.symvar(expression), [expression])
-    return ca.OP_FLOOR in map(function.instruction_id, range(function.n_instructions()))
-
-
 def compile_folder(sources: Path, binary: Path) -> None:
     """Compiles every C file of a folder into a shared library.
 
@@ -145,12 +140,8 @@ def compile_folder(sources: Path, binary: Path) -> None:
     files = sorted(file.name for file in sources.glob("*.c"))
     arguments = [*FLAGS, f"-I{HEADERS}", *files, "-lm", "-o", str(binary.resolve())]
     try:
-        done = subprocess.run(
-            [*shlex.split(compiler), *arguments],
-            cwd=sources,
-            capture_output=True,
-            text=True,
-        )
+        command = [*shlex.split(compiler), *arguments]
+        done = subprocess.run(command, cwd=sources, capture_output=True, text=True)
     except OSError as error:
         raise RuntimeError(f"CC={compiler}: {error.strerror}") from error
     if done.returncode:

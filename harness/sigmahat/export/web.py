@@ -44,7 +44,8 @@ def write(out: Path, page: Path, fmus: list[Path], cache: Path) -> None:
 
     Raises ``subprocess.CalledProcessError`` if the compiler fails, which prints why on stderr.
     """
-    types = {fmu.stem: _described(fmu, page / "callbacks.c", cache) for fmu in fmus}
+    opened = {path.stem: Fmu(path) for path in fmus}
+    types = {name: _described(fmu, page / "callbacks.c", cache) for name, fmu in opened.items()}
     shutil.rmtree(out, ignore_errors=True)
     out.mkdir(parents=True)
     for file in page.iterdir():
@@ -52,17 +53,16 @@ def write(out: Path, page: Path, fmus: list[Path], cache: Path) -> None:
             shutil.copyfile(file, out / file.name)
     # The words by which `sigmahat init` recognises columns.
     words = toml_file.read(Path(guessing.__file__).parent / "vocabulary.toml").unwrap()
-    conditions = _scenario({fmu.stem: fmu for fmu in fmus})
-    data = {"FMUS": types, "SCENARIO": conditions, "WORDS": words, "UNKNOWN": _UNKNOWN}
+    data = {"FMUS": types, "SCENARIO": _scenario(opened), "WORDS": words, "UNKNOWN": _UNKNOWN}
     encode = json.JSONEncoder(separators=(",", ":"), default=dict).encode
     lines = ['"use strict";', *(f"const {name} = {encode(each)};" for name, each in data.items())]
     (out / "fmus.js").write_text("\n".join([*lines, ""]), encoding="utf-8")
 
 
-def _described(fmu: Path, callbacks: Path, cache: Path) -> dict[str, Any]:
+def _described(fmu: Fmu, callbacks: Path, cache: Path) -> dict[str, Any]:
     """Data of an FMU that the page needs, with the binary and the page's callbacks in it."""
-    with Fmu(fmu) as opened, TemporaryDirectory() as scratch:
-        folder, binary = Path(opened.folder), Path(scratch) / "fmu.wasm"
+    with TemporaryDirectory() as scratch:
+        folder, binary = Path(fmu.folder), Path(scratch) / "fmu.wasm"
         arguments: list[str | Path] = [
             *(_KIND, *cross_compiler.CODE),
             *(f"-I{each.resolve()}" for each in (folder / "sources", cross_compiler.HEADERS)),
@@ -72,9 +72,9 @@ def _described(fmu: Path, callbacks: Path, cache: Path) -> dict[str, Any]:
         ]
         cross_compiler.compile_files(_TARGET, arguments, cache, Path(scratch))
         return {
-            "name": opened.name,
-            "guid": opened.description.guid,
-            "variables": {name: _variable(v) for name, v in opened.variables.items()},
+            "name": fmu.name,
+            "guid": fmu.description.guid,
+            "variables": {name: _variable(v) for name, v in fmu.variables.items()},
             "wasm": base64.b64encode(binary.read_bytes()).decode("ascii"),
         }
 
@@ -87,20 +87,16 @@ def _variable(variable: Any) -> dict[str, Any]:
     return shown
 
 
-def _scenario(fmus: Mapping[str, Path]) -> dict[str, Any]:
-    """The conditions of Table I."""
+def _scenario(fmus: Mapping[str, Fmu]) -> dict[str, Any]:
+    def numbers(fmu: str, start: Mapping[str, Value]) -> dict[str, float | int]:
+        return {name: fmus[fmu].number(name, value) for name, value in start.items()}
+
     table1 = scenario("table1")
     estimator = table1.estimators["RESIDUAL"]
     return {
         "T": table1.T,
         "duration": table1.duration,
         "connections": estimator.connections,
-        "plant": _numbers(fmus[table1.plant.fmu], {**table1.plant.start, **torques(table1)}),
-        "estimator": _numbers(fmus[estimator.fmu], estimator.start),
+        "plant": numbers(table1.plant.fmu, {**table1.plant.start, **torques(table1)}),
+        "estimator": numbers(estimator.fmu, estimator.start),
     }
-
-
-def _numbers(fmu: Path, start: Mapping[str, Value]) -> dict[str, float | int]:
-    """Start values as numbers for FMI."""
-    with Fmu(fmu) as opened:
-        return {name: opened.number(name, value) for name, value in start.items()}

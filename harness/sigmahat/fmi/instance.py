@@ -234,7 +234,7 @@ class Slave:
             self.fmi = fmu.interface(name)
             self.fmi.instantiate(callbacks=self._callbacks, loggingOn=True)
         except Exception as error:
-            raise FmuError(self._explain(str(error))) from error
+            raise self.failure(str(error)) from error
         self.component = self.fmi.component
         self.functions: Any = self.fmi.dll
         """The FMI functions themselves, with the types that FMPy gave them, for call()."""
@@ -248,11 +248,11 @@ class Slave:
     def call(self, function: Callable[..., int], *arguments: Any) -> None:
         """Calls one of the functions for this instance. Raises FmuError if it fails."""
         if function(self.component, *arguments) > fmi2.fmi2Warning:
-            raise self.failure(function.__name__)
+            raise self.failure(f"{function.__name__} failed")
 
-    def failure(self, function: str) -> FmuError:
-        """The error to raise if an FMI function failed that was not called through call()."""
-        return FmuError(self._explain(f"{function} failed"))
+    def failure(self, what: str) -> FmuError:
+        """The error to raise: what the FMU said, else what happened."""
+        return FmuError(f"{self.name}: {'; '.join(self.errors) or what}")
 
     def initialize(self, start: Mapping[str, Value]) -> None:
         """Sets start values by name and initialises at time 0.
@@ -305,10 +305,7 @@ class Slave:
             finally:
                 self.fmi.freeFMUstate(state)
         except FMICallException as error:
-            raise self.failure(error.function) from error
-
-    def _explain(self, failure: str) -> str:
-        return f"{self.name}: {'; '.join(self.errors) or failure}"
+            raise self.failure(f"{error.function} failed") from error
 
 
 def _close(library: list[fmi2.FMU2Slave], folder: str) -> None:

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -19,8 +18,8 @@ from sigmahat.fmi.interrupts import interrupts_wait
 _SET_REAL, _SET_SLOPES, _DO_STEP, _GET_REAL, _GET_INTEGER = range(1, 6)
 
 
-class _NativeCall(ctypes.Structure):
-    """sh_call of harness/native/sample_loop.h."""
+class _Call(ctypes.Structure):
+    """sh_call of harness/native/sample_loop.h, which keeps the objects that it points to."""
 
     _fields_ = (
         ("kind", ctypes.c_int),
@@ -33,28 +32,24 @@ class _NativeCall(ctypes.Structure):
         ("stride", ctypes.c_size_t),
     )
 
-
-@dataclass(frozen=True)
-class _Call:
-    kind: int
-    slave: Slave
-    function: Any
-    references: Any
-    orders: Any
-    table: NDArray[Any]
-
-    def native(self) -> _NativeCall:
-        """The call for the loop in C, with pointers to the arrays of this object."""
-        return _NativeCall(
-            self.kind,
-            self.slave.component,
-            ctypes.cast(self.function, ctypes.c_void_p),
-            _address(self.references),
-            0 if self.references is None else len(self.references),
-            _address(self.orders),
-            self.table.ctypes.data,
-            self.table.strides[0] if self.table.ndim == 2 else 0,
+    def __init__(
+        self, kind: int, slave: Slave, callee: Any, given: Sequence[Any], table: NDArray[Any]
+    ) -> None:
+        """given  value references, and orders of derivatives"""
+        count = len(given[0]) if given else 2
+        dtype = np.dtype(np.int32 if kind == _GET_INTEGER else np.float64)
+        if not table.flags.c_contiguous or table.dtype != dtype or table.shape[-1] != count:
+            raise ValueError(
+                f"expected a C-contiguous table of {dtype} with {count} columns, got one of "
+                f"{table.dtype} and shape {table.shape}"
+            )
+        arrays = [ctypes.addressof(each) for each in given] + [0, 0]
+        stride = table.strides[0] if table.ndim == 2 else 0
+        address = ctypes.cast(callee, ctypes.c_void_p)
+        super().__init__(
+            kind, slave.component, address, arrays[0], count, arrays[1], table.ctypes.data, stride
         )
+        self.slave, self.callee, self.given, self.table = slave, callee, given, table
 
 
 class SampleLoop:
@@ -68,29 +63,29 @@ class SampleLoop:
     def __init__(self, *parts: SampleLoop) -> None:
         """Begins with the calls of other loops."""
         self._calls: list[_Call] = [call for part in parts for call in part._calls]
-        self._native: ctypes.Array[_NativeCall] | None = None
+        self._native: ctypes.Array[_Call] | None = None
 
     def set_real(self, slave: Slave, references: Any, table: NDArray[np.float64]) -> None:
         if len(references):
-            self._add(_SET_REAL, slave, slave.functions.fmi2SetReal, references, None, table)
+            self._add(_SET_REAL, slave, slave.functions.fmi2SetReal, [references], table)
 
     def set_slopes(self, slave: Slave, references: Any, table: NDArray[np.float64]) -> None:
         """Sets the first derivatives of Real inputs."""
         function = slave.functions.fmi2SetRealInputDerivatives
         if len(references):
             orders = (fmi2.fmi2Integer * len(references))(*[1] * len(references))
-            self._add(_SET_SLOPES, slave, function, references, orders, table)
+            self._add(_SET_SLOPES, slave, function, [references, orders], table)
 
     def step(self, slave: Slave, times: NDArray[np.float64]) -> None:
         """Makes a step; step_times() gives the table."""
-        self._add(_DO_STEP, slave, slave.functions.fmi2DoStep, None, None, times)
+        self._add(_DO_STEP, slave, slave.functions.fmi2DoStep, [], times)
 
     def get(self, slave: Slave, kind: str, references: Any, table: NDArray[Any]) -> None:
         """Gets variables of a kind: "Real"; "Integer", also for enumerations; or "Boolean"."""
         if len(references):
             number = _GET_REAL if kind == "Real" else _GET_INTEGER
             get = getattr(slave.functions, f"fmi2Get{kind}")
-            self._add(number, slave, get, references, None, table)
+            self._add(number, slave, get, [references], table)
 
     def run(self, first: int, end: int) -> None:
         """Makes all calls for the samples first to end - 1.
@@ -105,7 +100,7 @@ class SampleLoop:
             refused = self._run(first, end)
         if refused < len(self._calls):
             call = self._calls[refused]
-            raise call.slave.failure(call.function.__name__)
+            raise call.slave.failure(f"{call.callee.__name__} failed")
 
     def _run(self, first: int, end: int) -> int:
         """Returns the index of the call that failed, or the number of calls."""
@@ -113,19 +108,11 @@ class SampleLoop:
         if library is None:
             return _run_in_python(self._calls, first, end)
         if self._native is None:
-            self._native = (_NativeCall * len(self._calls))(*map(_Call.native, self._calls))
+            self._native = (_Call * len(self._calls))(*self._calls)
         return int(library.sh_sample_loop(self._native, len(self._calls), first, end))
 
     def _add(self, *fields: Any) -> None:
-        call = _Call(*fields)
-        table, count = call.table, 2 if call.kind == _DO_STEP else len(call.references)
-        dtype = np.dtype(np.int32 if call.kind == _GET_INTEGER else np.float64)
-        if not table.flags.c_contiguous or table.dtype != dtype or table.shape[-1] != count:
-            raise ValueError(
-                f"expected a C-contiguous table of {dtype} with {count} columns, got one of "
-                f"{table.dtype} and shape {table.shape}"
-            )
-        self._calls.append(call)
+        self._calls.append(_Call(*fields))
         self._native = None
 
 
@@ -141,20 +128,13 @@ def _run_in_python(calls: list[_Call], first: int, end: int) -> int:
     for k in range(first, end):
         for place, (call, table) in enumerate(zip(calls, rows, strict=True)):
             row = table[k] if call.table.ndim == 2 else table
-            component = call.slave.component
             if call.kind == _DO_STEP:
-                status = call.function(component, row[0], row[1], fmi2.fmi2True)
+                arguments = [*row, fmi2.fmi2True]
             else:
-                orders = [call.orders] if call.kind == _SET_SLOPES else []
-                count = len(call.references)
-                status = call.function(component, call.references, count, *orders, row)
-            if status > fmi2.fmi2Warning:
+                arguments = [call.given[0], call.count, *call.given[1:], row]
+            if call.callee(call.slave.component, *arguments) > fmi2.fmi2Warning:
                 return place
     return len(calls)
-
-
-def _address(array: Any) -> int | None:
-    return None if array is None else ctypes.addressof(array)
 
 
 _KINDS = {"Real": "Real", "Integer": "Integer", "Enumeration": "Integer", "Boolean": "Boolean"}

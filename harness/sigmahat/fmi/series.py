@@ -51,11 +51,12 @@ class Series:
         """
         import pandas
 
-        shapes = {values.shape for values in self.values.values()} or {self.t.shape}
         index: Any = pandas.Index(self.t, name="t")
-        if any(len(shape) == 2 for shape in shapes):
-            joints = range(next(iter(shapes))[0])
-            index = pandas.MultiIndex.from_product([joints, self.t], names=["joint", "t"])
+        first = next(iter(self.values.values()), self.t)
+        if first.ndim == 2:
+            index = pandas.MultiIndex.from_product(
+                [range(len(first)), self.t], names=["joint", "t"]
+            )
         columns = {name: values.reshape(-1) for name, values in self.values.items()}
         frame: pandas.DataFrame = pandas.DataFrame(columns, index=index)
         frame.attrs |= {"unit": dict(self.units), "description": dict(self.descriptions)}

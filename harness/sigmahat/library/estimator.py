@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Container, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -18,12 +18,15 @@ Array = NDArray[np.float64]
 RECORD = ("sigma", "sigma_std", "tau_e", "phi", "misfit", "confident", "valid")
 """Outputs that are recorded by default."""
 
-POINT = ("tau_e", "tau_e_std", "sigma", "sigma_std")  # of evaluate(), in the order of the library
+POINT = ("tau_e", "tau_e_std", "sigma", "sigma_std")  # of evaluate(), in the order of sh_point
 
 _LONG = 1.0  # [s] a motion that is compared with range.phi
 _FAR, _WIDE = 1.2, 8.0  # ratio of the largest deformation to range.phi, and inverse ratio
-_NEEDED = {"Residual": ("theta", "q", "tau"), "Sensor": ("theta", "q", "tau_e_sensor")}
-"""Inputs without which a modality has no torque. Model needs no more than theta and q."""
+_NEEDED = {
+    "Residual": ("theta", "q", "tau"), "Sensor": ("theta", "q", "tau_e_sensor"),
+    "Model": ("theta", "q"),
+}  # fmt: skip
+"""Inputs without which a modality has no torque."""
 
 
 class Estimator:
@@ -70,7 +73,6 @@ class Estimator:
             self._joints.fmu.variable(name, "output")
         self.parameters = [self._joints.fmu.parameters(each) for each in given]
         """All present parameters of each joint: given values, else values of the FMU."""
-        self._needed = self._inputs_needed()
         self._tick: Callable[[Sequence[ArrayLike | None]], dict[str, Any]] | None = None
         self._is_warned = False
 
@@ -98,7 +100,12 @@ class Estimator:
         """
         given = dict(zip(INPUTS, (theta, q, theta_c, tau, tau_e_sensor), strict=True))
         self._need(given)
-        arrays = {name: _samples(each) for name, each in given.items() if each is not None}
+        # For C; masked samples are nan.
+        arrays: dict[str, Array] = {
+            name: np.asarray(np.ma.filled(np.ma.asarray(each, np.float64), np.nan), order="C")
+            for name, each in given.items()
+            if each is not None
+        }
         shape = arrays["theta"].shape
         if len(shape) not in (1, 2) or any(each.shape != shape for each in arrays.values()):
             shapes = ", ".join(f"{name} {each.shape}" for name, each in arrays.items())
@@ -108,9 +115,7 @@ class Estimator:
         outputs = {name: self._joints.empty(name, joints, samples) for name in self._record}
         rows = [arrays[n].reshape(joints, samples) if n in arrays else None for n in INPUTS]
         self._joints.run(rows, outputs)
-        self._compare_with_range(
-            arrays["q"].reshape(joints, -1), arrays["theta"].reshape(joints, -1)
-        )
+        self._compare_with_range((arrays["q"] - arrays["theta"]).reshape(joints, samples))
         named = {name: self._joints.named(name, v).reshape(shape) for name, v in outputs.items()}
         t = float(self.parameters[0]["samplePeriod"]) * np.arange(samples, dtype=np.float64)
         return Series.of(self._joints.fmu, named, self.parameters[0], t)
@@ -130,12 +135,12 @@ class Estimator:
         """
         values = (theta, q, theta_c, tau, tau_e_sensor)
         if self._tick is None:
-            self._need(dict(zip(INPUTS, values, strict=True)))
+            needed = self._need(dict(zip(INPUTS, values, strict=True)))
             shapes = {np.shape(each) for each in values if each is not None} - {()}
             if len(shapes) > 1 or any(len(shape) > 1 for shape in shapes):
                 raise ValueError(f"expected numbers or arrays of one shape (joints,), got {shapes}")
             self._take_shape(shapes.pop() if shapes else self._shape or ())
-            self._tick = self._prepared()
+            self._tick = self._prepared(needed)
         return self._tick(values)
 
     def evaluate(self, phi: ArrayLike, set_point: ArrayLike | None = None) -> dict[str, Array]:
@@ -195,7 +200,6 @@ class Estimator:
             raise
         now = self._joints.fmu.parameters(parameters)
         self.parameters = [{**each, **{n: now[n] for n in parameters}} for each in self.parameters]
-        self._needed = self._inputs_needed()
         self._tick = None
 
     def reset(self) -> None:
@@ -214,15 +218,14 @@ class Estimator:
     def __reduce__(self) -> str:
         raise TypeError("an Estimator cannot be pickled; make one where it is needed")
 
-    def _compare_with_range(self, q: Array, theta: Array) -> None:
+    def _compare_with_range(self, every_phi: Array) -> None:
         """Logs a warning, once, if the motion is far from range.phi, by which priors are scaled."""
-        for joint, every in enumerate(self.parameters):
-            is_long = q.shape[1] * float(every["samplePeriod"]) > _LONG
+        for phi, every in zip(every_phi, self.parameters, strict=True):
+            is_long = len(phi) * float(every["samplePeriod"]) > _LONG
             if every["method"] != "FilteredRegression" or not is_long or self._is_warned:
                 continue
-            phi = q[joint] - theta[joint]
-            moved = np.abs(phi[np.isfinite(phi)])
-            most, given = float(moved.max(initial=0.0)), float(every["range.phi"])
+            most = float(np.max(np.abs(phi), initial=0.0, where=np.isfinite(phi)))
+            given = float(every["range.phi"])
             if most > _FAR * given or 0 < _WIDE * most < given:
                 self._is_warned = True
                 logging.getLogger("sigmahat").warning(
@@ -230,18 +233,14 @@ class Estimator:
                     "the largest deformation, or the stiffness may be wrong", most, given,
                 )  # fmt: skip
 
-    def _inputs_needed(self) -> dict[str, str]:
-        """Inputs that must be given, and the modality that needs each."""
-        return {
-            name: modality
-            for modality in set(self._joints.value("modality").tolist())
-            for name in _NEEDED.get(modality, ("theta", "q"))
-        }
-
-    def _need(self, given: Mapping[str, ArrayLike | None]) -> None:
-        for name, modality in self._needed.items():
-            if given[name] is None:
-                raise ValueError(f"modality {modality} needs {name}, got None")
+    def _need(self, given: Mapping[str, ArrayLike | None]) -> set[str]:
+        """Returns the inputs that the modalities need. Raises ValueError if one is missing."""
+        needed = {str(each["modality"]): _NEEDED[str(each["modality"])] for each in self.parameters}
+        for modality, names in needed.items():
+            for name in names:
+                if given[name] is None:
+                    raise ValueError(f"modality {modality} needs {name}, got None")
+        return {name for names in needed.values() for name in names}
 
     def _take_shape(self, shape: tuple[int, ...]) -> None:
         """Checks the shape of samples without time; the first shape gives the number of joints."""
@@ -258,7 +257,9 @@ class Estimator:
                 f"{shape[0] if shape else 'one'}"
             )
 
-    def _prepared(self) -> Callable[[Sequence[ArrayLike | None]], dict[str, Any]]:
+    def _prepared(
+        self, needed: Container[str]
+    ) -> Callable[[Sequence[ArrayLike | None]], dict[str, Any]]:
         """A tick that allocates nothing, for many calls."""
         joints = self._joints
         count, single = len(joints.memory), not self._shape
@@ -266,10 +267,10 @@ class Estimator:
         outputs = {name: joints.empty(name, count, 1) for name in self._record}
         run = joints.prepared(list(inputs), outputs)
         places = [(name, each, joints.names(name)) for name, each in outputs.items()]
-        needed = [name in self._needed for name in INPUTS]
+        must_be_given = [name in needed for name in INPUTS]
 
         def tick(values: Sequence[ArrayLike | None]) -> dict[str, Any]:
-            for row, value, must in zip(inputs, values, needed, strict=True):
+            for row, value, must in zip(inputs, values, must_be_given, strict=True):
                 try:
                     if must and value is None:
                         raise TypeError
@@ -289,10 +290,3 @@ class Estimator:
             }
 
         return tick
-
-
-def _samples(values: ArrayLike) -> Array:
-    """Samples as an array for C; masked samples are nan."""
-    if isinstance(values, np.ma.MaskedArray):
-        values = np.ma.filled(values.astype(np.float64), np.nan)
-    return np.asarray(values, np.float64, order="C")

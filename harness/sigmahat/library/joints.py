@@ -77,8 +77,7 @@ class Joints:
         points: NDArray[np.float64] = np.empty((phi.size, 4))
         arrays = (phi.ctypes.data, set_point.ctypes.data, points.ctypes.data)
         self._library.sh_joint_evaluate(self._address(joint), phi.size, *arrays)
-        by_name: NDArray[np.float64] = points.T
-        return by_name
+        return np.transpose(points)
 
     def copied(self) -> Joints:
         other = copy(self)

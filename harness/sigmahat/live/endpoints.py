@@ -1,7 +1,4 @@
-"""Sources and sinks by their names on the command line: UDP, TCP, standard input, or a log.
-
-A source reads in threads of its own, and puts the messages into an inbox.
-"""
+"""Sources and sinks by their names on the command line: UDP, TCP, standard input, or a log."""
 
 from __future__ import annotations
 

@@ -1,7 +1,6 @@
 """One joint on line: its samples at the ticks, its estimator, and the logs of this estimator.
 
-Samples are moved to the ticks as in logs/sampling.py. Units and counters are converted as in
-logs/sampling.py.
+Samples are moved to the ticks, units and counters converted, as in logs/sampling.py.
 """
 
 import math

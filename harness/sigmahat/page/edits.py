@@ -37,8 +37,6 @@ BY_SCALE = "factor"  # choice in place of a unit: the port has a scale
 
 @dataclass(frozen=True)
 class NumberField:
-    """A key whose value is a number."""
-
     key: str
     title: str
     default: str = ""  # text for the value that holds without the key
@@ -56,14 +54,12 @@ OF_PORT = (
     NumberField("wrap", "starts again after", "never", ports=("theta", "q", "theta_c")),
     NumberField("delay", "recorded later by [s]", "0", ports=("tau",)),
 )
-"""Fields of each port."""
 PARAMETERS = (
     NumberField("samplePeriod", "sample period [s]", "0.001"),
     NumberField("motor.gamma", "motor.gamma", "of theta"),
     NumberField("motor.B", "motor.B [kg.m²]"),
     NumberField("motor.D_theta", "motor.D_theta [N.m.s/rad]"),
 )
-"""Fields of the estimator."""
 CHOICES: Mapping[str, Sequence[str]] = {
     "modality": ("Residual", "Sensor", "Model"),
     "method": ("Paper2011", "FilteredRegression"),
@@ -98,7 +94,6 @@ def set_value(document: tomlkit.TOMLDocument, key: str, value: Value) -> None:
 
 
 def remove_value(document: tomlkit.TOMLDocument, key: str) -> None:
-    """Removes a key, if the key exists."""
     if value_of(document, key) is not None:
         joints.remove(document, _place(key))
 
@@ -139,6 +134,5 @@ def _values(document: tomlkit.TOMLDocument) -> Iterator[tuple[str, Any]]:
 
 
 def _place(key: str) -> joints.Place:
-    """The sections and the name of a key."""
     place = tuple(key.split("."))
     return place if place[0] in SECTIONS else ("parameters", key)

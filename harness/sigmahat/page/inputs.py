@@ -39,7 +39,6 @@ def words(html: str = "", name: str | None = None, **styles: str | None) -> Div:
 
 
 def button(name: str, clicked: Callable[[], object], label: str = "", **more: Any) -> Button:
-    """A button that calls `clicked`; `more` is passed to Bokeh."""
     made = Button(label=label, name=name, stylesheets=[style()], **more)
     made.on_click(lambda: clicked())
     return made
@@ -94,8 +93,6 @@ class Number:
 
 
 class Choice:
-    """A list to choose from."""
-
     def __init__(
         self,
         setup: Setup,
@@ -123,7 +120,6 @@ class Choice:
         self.widget.on_change("value", self._picked)
 
     def offer(self, items: Sequence[str]) -> None:
-        """Offers these items instead."""
         self._options = [(each, each) for each in items]
         self.widget.options = list(self._options)
 

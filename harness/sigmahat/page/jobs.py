@@ -1,10 +1,11 @@
 """Slow jobs in a thread: previews, guess, checks, curve. The page stays responsive meanwhile."""
 
 import logging
-import threading
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
+from queue import SimpleQueue
+from threading import Thread
 
 import numpy as np
 import tomlkit
@@ -23,7 +24,6 @@ _WIDTH, _HEIGHT = 160, 28  # of the line of a preview
 
 
 def look(log: Log, name: str) -> Look:
-    """The preview of a column of a log."""
     try:
         values = log.read(name)
     except LogError:
@@ -75,48 +75,37 @@ class Jobs:
 
     def __init__(self, setup: Setup, later: Later) -> None:
         self._setup, self._later = setup, later
-        self._news = threading.Condition()
         self._version = 0
-        self._text: str | None = None
-        self._estimate: str | None = None
-        # The thread must not keep the program alive.
+        self._waiting: SimpleQueue[tuple[int | None, Callable[[], object]]] = SimpleQueue()
+        self._waiting.put((None, self._look))
         setup.changed = self.wanted
-        self._thread = threading.Thread(target=self._run, daemon=True)
+        # The thread must not keep the program alive.
+        self._thread = Thread(target=self._run, daemon=True)
 
     def start(self) -> None:
         if self._thread.ident is None:
             self._thread.start()
 
     def wanted(self) -> None:
-        """The configuration has changed: check it."""
         setup = self._setup
         setup.busy = "Checking ..."
-        with self._news:
-            self._version += 1
-            self._text = setup.text if setup.is_ready else None
-            self._news.notify()
+        self._version += 1
+        if setup.is_ready:
+            job = partial(self._check, self._version, setup.text)
+            self._waiting.put((self._version, job))
         setup.show()
 
     def estimate(self) -> None:
         """Identifies and estimates with the configuration as it is now."""
         setup = self._setup
         setup.busy = "Identifying ..."
-        with self._news:
-            self._estimate = setup.text
-            self._news.notify()
+        job = partial(self._identify_and_estimate, self._version, setup.text)
+        self._waiting.put((self._version, job))
         setup.show()
 
     def _run(self) -> None:
-        self._try(None, self._look)
         while True:
-            with self._news:
-                self._news.wait_for(lambda: self._text is not None or self._estimate is not None)
-                version, text, last = self._version, self._text, self._estimate
-                self._text = self._estimate = None
-            if last is not None:
-                self._try(version, partial(self._identify_and_estimate, version, last))
-            else:
-                self._try(version, partial(self._check, version, str(text)))
+            self._try(*self._waiting.get())
 
     def _try(self, version: int | None, job: Callable[[], object]) -> None:
         """Does a job for a version of the configuration; None: for the log, which can be read."""
@@ -155,6 +144,7 @@ class Jobs:
                 self._later(partial(self._show, version, busy=f"The curve: {percent} % ..."))
             done += thousandths
 
+        progress(0)
         configuration = checked_configuration(tomlkit.parse(text), path)
         checked = check(log, configuration)
         busy = "The curve ..."

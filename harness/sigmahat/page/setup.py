@@ -32,15 +32,11 @@ _DOUBLE_CLICK = 0.5  # [s] the second click of a double click does not confirm
 
 @dataclass(frozen=True)
 class Look:
-    """A preview of a column."""
-
     span: str  # least and greatest value, or why the column has no values
     line: Sequence[tuple[float, float]]  # points in a box of 160 x 28, from its upper left corner
 
 
 class Setup:
-    """A log that is being set up."""
-
     def __init__(self, log: Log, path: Path) -> None:
         """Starts without a configuration, until start_from() or guessed() is called."""
         self.log = log
@@ -158,7 +154,6 @@ class Setup:
             self._start({name: tomlkit.parse(text) for name, text in templates.items()})
 
     def set_joint(self, name: str) -> None:
-        """Shows another joint of the log."""
         self.joint, self.document = name, self.joints[name]
         # Present results and questions belong to the joint before.
         self.message, self.problem, self.asks_to_overwrite = "", "", False
@@ -169,7 +164,6 @@ class Setup:
 
     @property
     def open_keys(self) -> list[str]:
-        """Keys that have to be filled in."""
         return edits.to_fill_in(self.document)
 
     @property

@@ -1,7 +1,4 @@
-"""The document of one window: panels that show the setup.
-
-They are ports and parameters, the resulting curve, findings of the checks, and a bar to save.
-"""
+"""The document of one window: panels that show the setup."""
 
 from __future__ import annotations
 
@@ -26,7 +23,6 @@ from sigmahat.plotting.style import PAGE
 
 if TYPE_CHECKING:
     from sigmahat.checks.findings import Checked, Finding
-    from sigmahat.plotting.panels import Panel
 
 _NONE = ""
 _TEMPLATES = environment(Path(__file__).parent)
@@ -77,11 +73,14 @@ class PortPanel:
             number.widget.visible = fits or setup.get(key) is not None
             number.show()
         self._time.widget.visible = len(set(setup.log.columns.values())) > 1
-        self._notes.text = self._comments()
-        self._notes.visible = bool(self._notes.text)
+        notes = []  # on uncertain guesses
+        for key in ("unit", "sign", *(field.key for field in OF_PORT)):
+            if said := edits.comment_of(setup.document, f"{self._where}.{key}"):
+                notes.append(escape(f"{key}: {said.removeprefix(f'{FILL_IN}: ')}"))
+        self._notes.text = "".join(f"<small>{each}</small><br>" for each in notes)
+        self._notes.visible = bool(notes)
 
     def _name(self) -> str:
-        """The column that is chosen."""
         name = self._setup.get(f"{self._where}.column")
         return _NONE if name in (None, FILL_IN) else str(name)
 
@@ -90,18 +89,8 @@ class PortPanel:
             return BY_SCALE
         return str(self._setup.get(f"{self._where}.unit") or UNITS[self._port][0])
 
-    def _comments(self) -> str:
-        """Comments on uncertain guesses."""
-        comment = partial(edits.comment_of, self._setup.document)
-        keys = ("unit", "sign", *(field.key for field in OF_PORT))
-        found = ((key, comment(f"{self._where}.{key}")) for key in keys)
-        said = ((key, text.removeprefix(f"{FILL_IN}: ")) for key, text in found if text)
-        return "".join(f"<small>{escape(key)}: {escape(text)}</small><br>" for key, text in said)
-
 
 class ParameterPanel:
-    """The time, and the parameters of the estimator."""
-
     def __init__(self, setup: Setup) -> None:
         self._setup = setup
         columns = [(_NONE, "none: sample period"), *((name, name) for name in setup.log.columns)]
@@ -124,8 +113,6 @@ class ParameterPanel:
 
 
 class ResultPanel:
-    """Results of `sigmahat estimate`."""
-
     def __init__(self, setup: Setup) -> None:
         self._setup = setup
         self._shown: object = self
@@ -153,27 +140,21 @@ class ResultPanel:
         if not curve.branches:
             return [words("No curve: the estimator learned nothing from the log.")]
         panels = list(curve_panels(curve, points))
+        # The colours once for both plots, and what band and points are.
+        legend = "".join(
+            f'<span style="color:{each.color}">&#9632;</span> {escape(each.label)} &nbsp; '
+            for each in panels[0].curves
+        )
         # Before identify has chosen its order, the polynomial has more powers than the spring.
         text = "\n".join(curve_text(curve, self._setup.get("rls.n") is not None))
         return [
-            words(_legend(panels[0]), overflow_x="auto"),
+            words(f"{legend}<small>{escape(panels[0].caption)}</small>", overflow_x="auto"),
             in_grid(plots(panels, None), "30rem"),
             words(f"<pre>{escape(text)}</pre>", overflow_x="auto"),
         ]
 
 
-def _legend(panel: Panel) -> str:
-    """The colours, once for both plots, and what band and points are."""
-    labels = "".join(
-        f'<span style="color:{curve.color}">&#9632;</span> {escape(curve.label)} &nbsp; '
-        for curve in panel.curves
-    )
-    return f"{labels}<small>{escape(panel.caption)}</small>"
-
-
 class FindingsPanel:
-    """Findings of `sigmahat check`."""
-
     def __init__(self, setup: Setup) -> None:
         self._setup = setup
         self._shown: tuple[object, ...] = ()
@@ -255,8 +236,6 @@ class SavingBar:
 
 
 class Window:
-    """Shows a setup in a document."""
-
     def __init__(
         self,
         setup: Setup,

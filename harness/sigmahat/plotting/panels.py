@@ -15,8 +15,6 @@ COLORS = ("#1f83c4", "#12a37c", "#e06a1a", "#c9589b", "#b58900", "#56b4e9")
 
 
 class Kind(Enum):
-    """How a curve is drawn."""
-
     LINE = "line"
     POINTS = "points"
     MEANS = "means"  # points with intervals, and a line through them

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class TextTable:
-    """Cells as text."""
-
     title: str
     head: Sequence[str]
     rows: Sequence[Sequence[str]]
@@ -31,8 +29,6 @@ class TextTable:
 
 @dataclass(frozen=True)
 class Contents:
-    """All of a report."""
-
     title: str
     lines: Sequence[str]  # of text, below the title
     tables: Sequence[TextTable]
@@ -60,9 +56,6 @@ def of_file(title: str, table: pa.Table) -> TextTable:
     import pyarrow as pa
 
     columns = [[number(cell) for cell in column.to_pylist()] for column in table.columns]
-    return TextTable(
-        title,
-        [plain_title(*name_and_unit(name)) for name in table.column_names],
-        list(zip(*columns, strict=True)),
-        [i for i, field in enumerate(table.schema) if pa.types.is_string(field.type)],
-    )
+    head = [plain_title(*name_and_unit(name)) for name in table.column_names]
+    words = [i for i, field in enumerate(table.schema) if pa.types.is_string(field.type)]
+    return TextTable(title, head, list(zip(*columns, strict=True)), words)

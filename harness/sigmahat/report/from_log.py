@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
 
@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sigmahat.files.tables import read_csv
-from sigmahat.joint import sheet
 from sigmahat.joint.curve import (
     CURVE,
     Curve,
@@ -20,7 +19,7 @@ from sigmahat.joint.curve import (
     read_curve,
     stiffness_table,
 )
-from sigmahat.joint.sheet import Sheet
+from sigmahat.joint.sheet import FORMAT, Sheet
 from sigmahat.logs.curve import POINTS, MeasuredPoints, read_points
 from sigmahat.logs.estimate import JOINTS
 from sigmahat.logs.job import detected
@@ -33,16 +32,6 @@ from sigmahat.report.residuals import residual_panels, residuals
 _OF_THE_METHOD = ("a", "rho")  # inner outputs of the method, which are not in the table
 
 
-@dataclass(frozen=True)
-class _Answer:
-    """Contents of the files beside the table."""
-
-    sheet: sheet.Sheet
-    replayed: Replayed
-    curve: Curve
-    points: MeasuredPoints
-
-
 def from_log(folder: Path) -> Contents:
     """The curve, other results, and the signals of the estimator over time.
 
@@ -51,27 +40,26 @@ def from_log(folder: Path) -> Contents:
     table = EstimateTable(folder)
     used, t = table["valid"].astype(bool), table["t"]
     signals = table.without("valid", "t")
-    answer = _answer(folder)
-    regression = answer.sheet.method == "FilteredRegression"
+    sheet, log, curve, points = _beside_the_table(folder)
+    regression = sheet.method == "FilteredRegression"
     # The other method gives no interval, and predicts no friction.
     drawn = signals if regression else signals.without("sigma_std")
-    bandwidth = float(answer.sheet.start_values["regression.bandwidth"])
+    bandwidth = float(sheet.start_values["regression.bandwidth"])
     of_model = residuals(t, drawn, used, bandwidth) if regression else None
     reduced = reduce(t, drawn)
     marks = t[detected(signals["change_age"], signals["confident"].astype(bool))].tolist()
-    log = answer.replayed
     tables = [
-        *([curve_table(answer.curve)] if answer.curve.branches else []),
-        found_table(answer.sheet),
+        *([curve_table(curve)] if curve.branches else []),
+        found_table(sheet),
         *([] if log.findings is None else [findings_table(log.findings)]),
         _estimates(signals, used),
         _doubts(table.doubts()),
-        estimator_table(answer.sheet),
+        estimator_table(sheet),
     ]
     return Contents(
         f"Log: {folder.resolve().name}",
         [
-            _origin(answer, folder),
+            _origin(sheet, log, folder),
             # A gap in the log has ticks, but no rows.
             f"{len(used)} rows over {t[-1] - t[0]:.6g} s; "
             f"{log.skipped} of {log.ticks} ticks skipped, a tick every {log.T:g} s",
@@ -83,8 +71,8 @@ def from_log(folder: Path) -> Contents:
             *quantity_panels(reduced, ""),
             *(residual_panels(of_model) if of_model else []),
         ],
-        headline=headline(answer.curve, answer.sheet.doubt),
-        answer=list(curve_panels(answer.curve, answer.points)),
+        headline=headline(curve, sheet.doubt),
+        answer=list(curve_panels(curve, points)),
         notes=[*log.notes, *sampling(reduced)],
         every=reduced.every if reduced.bucket > 1 else None,
         marks=marks,
@@ -102,34 +90,29 @@ def from_joints(folder: Path) -> Contents:
     names = list(dict.fromkeys(map(str, table["joint"].to_pylist())))
     panels, lines = [], list[str]()
     for name in names:
-        answer = _answer(folder / name)
-        lines = lines or [_origin(answer, folder / name)]  # the same log for all joints
-        of_curve = list(curve_panels(answer.curve, answer.points))
-        panels += [replace(each, title=f"{name}: {each.title}") for each in of_curve[1:]]
+        sheet, log, curve, points = _beside_the_table(folder / name)
+        lines = lines or [_origin(sheet, log, folder / name)]  # the same log for all joints
+        _, *of_curve = curve_panels(curve, points)
+        panels += [replace(each, title=f"{name}: {each.title}") for each in of_curve]
     note = f"Each joint has a report of its own: sigmahat report {folder}/{names[0]}"
     stiffness = replace(of_file("Stiffness", table), note=note)
     return Contents(f"Joints: {folder.resolve().name}", lines, [stiffness], panels)
 
 
-def _answer(folder: Path) -> _Answer:
-    found = sheet.FORMAT.read(folder)
-    return _Answer(
-        found,
-        REPLAYED.read(folder),
-        read_curve(folder / CURVE, found.polynomial),
-        read_points(folder / POINTS),
-    )
+def _beside_the_table(folder: Path) -> tuple[Sheet, Replayed, Curve, MeasuredPoints]:
+    sheet = FORMAT.read(folder)
+    curve = read_curve(folder / CURVE, sheet.polynomial)
+    return sheet, REPLAYED.read(folder), curve, read_points(folder / POINTS)
 
 
-def _origin(answer: _Answer, folder: Path) -> str:
+def _origin(sheet: Sheet, log: Replayed, folder: Path) -> str:
     """A line with the log, the configuration, the version and the time of the results."""
     made = datetime.fromtimestamp((folder / REPLAYED.file).stat().st_mtime).astimezone()
-    version, source = answer.sheet.sigmahat, answer.sheet.configuration.file
-    return f"{answer.replayed.log} with {source}; sigmahat {version}, {made:%Y-%m-%d %H:%M %Z}"
+    source = f"{log.log} with {sheet.configuration.file}"
+    return f"{source}; sigmahat {sheet.sigmahat}, {made:%Y-%m-%d %H:%M %Z}"
 
 
 def findings_table(findings: Sequence[tuple[str, str]]) -> TextTable:
-    """The findings of the checks: severity and sentence."""
     note = "" if findings else "Nothing in the log contradicts the configuration."
     return TextTable("Checks", ["", "finding"], list(map(list, findings)), (0, 1), note=note)
 
@@ -146,25 +129,17 @@ def _estimates(signals: EstimateTable, used: NDArray[np.bool_]) -> TextTable:
             cells = [values[-1], *(range_and_rms or [np.nan] * 3)]
             title = plain_title(name, signals.units[name])
             rows.append([title, *(number(float(cell)) for cell in cells)])
-    return TextTable(
-        "Outputs of the estimator",
-        ["", "at the end", "least *", "greatest *", "RMS *"],
-        rows,
-        note="* in the second half",
-        folded=True,
-    )
+    head, note = ["", "at the end", "least *", "greatest *", "RMS *"], "* in the second half"
+    return TextTable("Outputs of the estimator", head, rows, note=note, folded=True)
 
 
 def _doubts(doubts: Counter[str]) -> TextTable:
     """How often the estimator was confident, and why not, in the second half."""
     rows = doubts.total()
     shares = [[item, f"{100 * count / rows:.3g}"] for item, count in doubts.most_common()]
-    return TextTable(
-        "Doubt",
-        ["why not confident", "fraction of rows [%] *"],
-        shares,
-        note="* in the second half; None: it was confident",
-    )
+    head = ["why not confident", "fraction of rows [%] *"]
+    note = "* in the second half; None: it was confident"
+    return TextTable("Doubt", head, shares, note=note)
 
 
 _WORDS = {
@@ -183,7 +158,6 @@ _FROM = {"prior": "the configuration (prior)", "identify": "identify", "exact": 
 
 
 def curve_table(curve: Curve) -> TextTable:
-    """The stiffness with its interval, the range of the curve, and the polynomial."""
     head, *rows = stiffness_table(curve)
     words = plain_text(polynomial_in_words(curve.polynomial))
     reach = plain_text(reach_in_words(curve))
@@ -195,19 +169,14 @@ def curve_table(curve: Curve) -> TextTable:
 
 
 def found_table(sheet: Sheet) -> TextTable:
-    """Motor data and other estimates, with intervals."""
     rows = []
     for name, each in sheet.parameters.items():
         interval = "-" if each.interval is None else " to ".join(map(number, each.interval))
         unit = "" if each.unit == "1" else plain_unit(each.unit)
         source = _FROM.get(each.interval_from, each.interval_from)
         rows.append([_WORDS.get(name, name), name, number(each.value), unit, interval, source])
-    return TextTable(
-        "Joint and motor",
-        ["", "name", "value", "unit", "95 % interval", "interval from"],
-        rows,
-        words=(0, 1, 3, 5),
-    )
+    head = ["", "name", "value", "unit", "95 % interval", "interval from"]
+    return TextTable("Joint and motor", head, rows, words=(0, 1, 3, 5))
 
 
 def estimator_table(sheet: Sheet) -> TextTable:

@@ -54,14 +54,13 @@ def from_reproduction(folder: Path) -> Contents:
     of_seeds = f" of {seeds} seeds; the plots show the first" if seeds > 1 else ""
     # The columns that have a value in some row.
     shown = [name for name in table.column_names if table[name].null_count < len(table)]
+    indices = of_file("Performance indices", table.select(shown))
+    quantities = quantity_panels(reduced, main if len(series) > 1 else "")
     return Contents(
         f"Reproduction: {folder.resolve().name}",
         [f"{len(t)} samples{of_seeds}"],
-        [of_file("Performance indices", table.select(shown))],
-        [
-            *stiffness_panels(reduced, estimates),
-            *quantity_panels(reduced, main if len(series) > 1 else ""),
-        ],
+        [indices],
+        [*stiffness_panels(reduced, estimates), *quantities],
         answer=list(over_deformation(series[main], main)),
         notes=sampling(reduced),
         every=reduced.every if reduced.bucket > 1 else None,
@@ -90,14 +89,10 @@ def over_deformation(signals: Signals, estimator: str) -> Iterator[Panel]:
             continue
         for name in ("tau_e", "sigma"):
             words = QUANTITIES[name].words.capitalize()
-            yield Panel(
-                f"{words} against deformation{of_side(side)}, {estimator}",
-                plain_axis("phi"),
-                plain_axis(name),
-                list(_curves(own, name, side)),
-                linked=False,
-                caption=f"last {_LAST * float(signals['t'][-1]):.3g} s",
-            )
+            title = f"{words} against deformation{of_side(side)}, {estimator}"
+            axes, curves = (plain_axis("phi"), plain_axis(name)), list(_curves(own, name, side))
+            caption = f"last {_LAST * float(signals['t'][-1]):.3g} s"
+            yield Panel(title, *axes, curves, linked=False, caption=caption)
 
 
 def _curves(signals: Signals, name: str, side: str) -> Iterator[Curve]:
@@ -133,13 +128,10 @@ def from_comparison(name: str, folder: Path) -> Contents:
         for group in dict.fromkeys(groups)
     ]
     picture = (folder / name).with_suffix(".png")
-    return Contents(
-        f"Comparison: {folder.resolve().name}",
-        [f"{table.num_rows} rows; mean over {seeds} seed{'s' if seeds > 1 else ''}"],
-        tables,
-        [],
-        pictures=[picture] if picture.is_file() else [],
-    )
+    pictures = [picture] if picture.is_file() else []
+    lines = [f"{table.num_rows} rows; mean over {seeds} seed{'s' if seeds > 1 else ''}"]
+    title = f"Comparison: {folder.resolve().name}"
+    return Contents(title, lines, tables, [], pictures=pictures)
 
 
 def from_sweep(folder: Path) -> Contents:
@@ -155,12 +147,10 @@ def from_sweep(folder: Path) -> Contents:
     if drawn:
         lines.append(f"drawn for each seed: {', '.join(drawn)}")
     columns = summary_columns(sweep)
-    summary = TextTable(
-        "Mean and 95 % interval over the runs",
-        [column.title for column in columns],
-        list(zip(*(column.cells for column in columns), strict=True)),
-        [i for i, column in enumerate(columns) if column.words],
-    )
+    head = [column.title for column in columns]
+    rows = list(zip(*(column.cells for column in columns), strict=True))
+    words = [i for i, column in enumerate(columns) if column.words]
+    summary = TextTable("Mean and 95 % interval over the runs", head, rows, words)
     panels = [*distributions(sweep), *against_parameters(sweep)]
     return Contents(f"Sweep: {folder.resolve().name}", lines, [summary], panels)
 
@@ -195,7 +185,6 @@ def report(folder: Path) -> str:
 
 
 def _page(contents: Contents) -> str:
-    """The report as HTML."""
     panels, first = [*contents.answer, *contents.panels], len(contents.answer)
     script, divs = components(plots(panels, contents.every, contents.marks)) if panels else ("", [])
     shown = list(zip(range(len(panels)), panels, divs, strict=True))

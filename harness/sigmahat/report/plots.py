@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 from sigmahat.plotting.panels import Curve, Kind, Panel
 from sigmahat.plotting.style import around
 
-_HEIGHT = 300
+_HEIGHT, _GREY = 300, "#888888"
 
 
 def plots(
@@ -43,14 +43,12 @@ def plots(
     made = []
     for i, panel in enumerate(panels):
         plot = _figure(panel, linked)
-        if every is not None and panel.linked:
-            plot.add_layout(
-                BoxAnnotation(left=every[0], right=every[1], fill_color="#888888", fill_alpha=0.12)
-            )
+        if panel.linked and every is not None:
+            low, high = every
+            plot.add_layout(BoxAnnotation(left=low, right=high, fill_color=_GREY, fill_alpha=0.12))
         for mark in marks if panel.linked else ():
-            plot.add_layout(
-                Span(location=mark, dimension="height", line_dash="dotted", line_color="#888888")
-            )
+            style = {"line_dash": "dotted", "line_color": _GREY}
+            plot.add_layout(Span(location=mark, dimension="height", **style))
         for j, curve in enumerate(panel.curves):
             _draw(plot, curve, f"trace-{i}-{j}", sources)
         made.append(plot)

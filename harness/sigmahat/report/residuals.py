@@ -6,6 +6,7 @@ half of a log is a test set: no sample was known when its torque was predicted.
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -63,8 +64,8 @@ def residuals(
 def residual_panels(found: Residuals) -> Iterator[Panel]:
     """The torque over time, autocorrelation of the residual, and its mean against each signal."""
     predicted, torque = found.signals["tau_e"], QUANTITIES["tau_e"]
-    shown = slice(-_SHOWN, None)
-    yield Panel(
+    shown, panel = slice(-_SHOWN, None), partial(Panel, linked=False)
+    yield panel(
         "Torque, measured and predicted before it was known",
         plain_axis("t"),
         plain_axis("tau_e"),
@@ -72,12 +73,11 @@ def residual_panels(found: Residuals) -> Iterator[Panel]:
             Curve("measured", TRUE, found.t[shown], (predicted + found.residual)[shown], width=2.4),
             Curve("predicted", COLORS[0], found.t[shown], predicted[shown]),
         ],
-        linked=False,
         caption=f"fit {found.fit:.1f} % in the second half of the log",
     )
     lags = found.T * np.arange(1, _LAGS + 1)
     limit = NORMAL_95 / np.sqrt(len(found.residual))
-    yield Panel(
+    yield panel(
         "Autocorrelation of the residual",
         "lag [s]",
         "correlation [1]",
@@ -88,12 +88,11 @@ def residual_panels(found: Residuals) -> Iterator[Panel]:
                 band=(np.full(_LAGS, -limit), np.full(_LAGS, limit)),
             ),
         ],
-        linked=False,
         caption="band: 95 % of the correlations of white noise",
     )  # fmt: skip
     for name in _OVER:
         x, mean, half = means(found.signals[name], found.residual)
-        yield Panel(
+        yield panel(
             f"Residual against {QUANTITIES[name].words}",
             plain_axis(name),
             f"residual [{torque.unit.replace('.', '·')}]",
@@ -101,7 +100,6 @@ def residual_panels(found: Residuals) -> Iterator[Panel]:
                 Curve("mean", COLORS[0], x, mean, band=(mean - half, mean + half)),
                 Curve("0", TRUE, x, np.zeros(len(x))),
             ],
-            linked=False,
             caption="band: 95 %; where the band does not contain 0, the model fails",
             y_range=around([mean - half, mean + half], 0.1),
         )
