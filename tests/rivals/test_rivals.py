@@ -8,23 +8,17 @@ import pytest
 
 from regression_joint import D_THETA, GAMMA, B, HardeningJoint, MisfitJoint, T
 from rivals.methods import METHODS
-from rivals.records import Estimate, JointLog, Known
+from rivals.records import Estimate, JointLog
 from rivals.score import QUANTILE, SCORES, Result, best, judge, page, score
 
 ERRORS = {"FilteredRegression": 0.5, "least_squares": 0.1}
 """Largest root mean square error of the stiffness [%]."""
 COUNTS = 1 << 18
-KNOWN = Known(
-    gamma=GAMMA,
-    B=B,
-    D_theta=D_THETA,
-    tau_coulomb=0.02,
-    noise_tau=1e-3,
-    counts_theta=COUNTS,
-    counts_q=COUNTS,
-    range_phi=0.1,
-    range_tau_e=20.0,
-)
+KNOWN = {
+    **{"motor.gamma": GAMMA, "motor.B": B, "motor.D_theta": D_THETA, "prior.tau_coulomb": 0.02},
+    **{"noise.tau": 1e-3, "encoder.theta": float(COUNTS), "encoder.q": float(COUNTS)},
+    **{"range.phi": 0.1, "prior.tau_e": 20.0},
+}
 
 
 JOINTS = {"series_elastic": MisfitJoint, "variable_stiffness": HardeningJoint}
@@ -32,7 +26,7 @@ JOINTS = {"series_elastic": MisfitJoint, "variable_stiffness": HardeningJoint}
 
 def ideal(kind: str, tau_coulomb: float = 0.01) -> JointLog:
     """A joint whose data sheet is right."""
-    joint = JOINTS[kind](counts=COUNTS, noise=KNOWN.noise_tau, tau_coulomb=tau_coulomb)
+    joint = JOINTS[kind](counts=COUNTS, noise=KNOWN["noise.tau"], tau_coulomb=tau_coulomb)
     theta, q, theta_c, tau, tau_e = joint.measurements().T
     return JointLog(kind, 1, T, theta, q, tau, theta_c, tau_e, joint.sigma, KNOWN)
 
