@@ -152,6 +152,7 @@ def test_what_confident_means() -> None:
     """The sentence of docs/filtered-regression.md, on joints that nobody has tuned on."""
     random = [each for each in CONDITIONS if each.group is Group.RANDOM]
     found = [row.score for row in compare(random, JOINTS, range(401, 441), processes=2)]
+    assert found[JOINTS.index(AWAS)].figures["error"] <= 5.0
     together = sum(found, Score())
     assert together.figures["confident"] >= 90
     assert together.figures["wrong"] <= 0.004 * together.figures["confident"]
