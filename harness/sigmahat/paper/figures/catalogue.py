@@ -38,7 +38,6 @@ def _stacked(*every: Panel) -> Callable[[Recording], Figure]:
         figure = Figure(figsize=(7.2, 1.2 + 2.5 * len(every)), layout="constrained")
         own = figure.subplots(len(every), squeeze=False)[:, 0]
         for axes, draw_panel in zip(own, every, strict=True):
-            axes.set_xlabel(math_axis("t"))
             draw_panel(axes, recording)
         return figure
 
@@ -89,6 +88,9 @@ _FLEXIBILITY_TORQUE = lines(
     ("plant.tau_e", TRUE),
     line("RESIDUAL.tau_e", r"fitted, $f(\theta_c, \phi)$", VERMILION),
 )
+_STABILITY_FACTOR = lines(
+    "stability factor $a(k)$ [1]", line("RESIDUAL.a", "RESIDUAL", BLUE), scale="log"
+)
 _CONSTANT_FACTORS = lines(
     math_axis("sigma"),
     ("plant.sigma", TRUE),
@@ -124,13 +126,6 @@ _TORQUES = lines(
 _two_columns, _five_columns = (partial(Axes.legend, ncols=count) for count in (2, 5))
 
 
-def _stability_factor(axes: Axes, recording: Recording) -> None:
-    """Figure 7: stability factor a(k) of the RESIDUAL estimate."""
-    factor = lines("stability factor $a(k)$ [1]", line("RESIDUAL.a", "RESIDUAL", BLUE))
-    panel(factor, legend=Axes.legend)(axes, recording)
-    axes.set_yscale("log")
-
-
 def _largest_stiffness(axes: Axes, recording: Recording) -> None:
     """The part of figure 12 with the largest stiffness."""
     t, true = recording.t, recording.plant["sigma"]
@@ -153,8 +148,6 @@ def transmission(recording: Recording) -> Figure:
         axes[place].set_title(last_part(recording), fontsize=9)
     axes["stiffness"].legend()
     errors(*ESTIMATES)(axes["errors"], recording)
-    for name in ("time", "errors"):
-        axes[name].set_xlabel(math_axis("t"))
     return figure
 
 
@@ -189,8 +182,6 @@ def antagonistic(recording: Recording) -> Figure:
         axes[f"curve{side}"].legend(loc="upper left")
     of_parts = (line(f"RESIDUAL.{signal}", name, color) for signal, color, name in parts)
     errors(*of_parts)(axes["errors"], recording)
-    for name in ("torques", "sigma", "sigma_1", "sigma_2", "errors"):
-        axes[name].set_xlabel(math_axis("t"))
     return figure
 
 
@@ -209,7 +200,7 @@ FIGURES: dict[str, Callable[[Recording], Figure]] = {
         panel(stiffness(), legend=_two_columns),
         panel(stiffness(), lambda each: window(each.t, 0.0, 0.3), "start-up"),
     ),
-    "fig7-stability-factor": _stacked(_stability_factor),
+    "fig7-stability-factor": _stacked(panel(_STABILITY_FACTOR, legend=Axes.legend)),
     "fig8-constant-factors": _stacked(panel(_CONSTANT_FACTORS, legend=_two_columns)),
     "fig9-deformation": _stacked(_DEFORMATION),
     "fig10-lever-arm": _stacked(_LEVER_ARM),

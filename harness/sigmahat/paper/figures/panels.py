@@ -42,7 +42,7 @@ _LAST = 1 / 3  # fraction of a run that is shown against the deformation: an est
 _COUNT = 80  # number of dots, small enough that the truth is visible between the dots
 
 
-def lines(label: str, *drawn: Line, within: str = "") -> Lines:
+def lines(label: str, *drawn: Line, within: str = "", scale: str = "linear") -> Lines:
     """Signals over time; estimators that a recording does not have are left out.
 
     within  signal whose range limits the axis, however far an estimate goes
@@ -56,7 +56,7 @@ def lines(label: str, *drawn: Line, within: str = "") -> Lines:
             top = float(np.max(true))
             axes.set_ylim(min(0.0, float(np.min(true))) - 0.1 * top, 1.4 * top)
         axes.margins(x=0.01)
-        axes.set_ylabel(label)
+        axes.set(xlabel=math_axis("t"), ylabel=label, yscale=scale)
 
     return draw
 
@@ -77,7 +77,8 @@ def errors(*drawn: Line) -> Panel:
             worst = error[: windows * window].reshape(windows, window).max(axis=1)
             axes.plot(recording.t[: windows * window : window], worst, **style)
         axes.margins(x=0.01)
-        axes.set(yscale="log", ylabel=f"relative error [%],\nlargest within {_ERROR_WINDOW:g} s")
+        label = f"relative error [%],\nlargest within {_ERROR_WINDOW:g} s"
+        axes.set(xlabel=math_axis("t"), ylabel=label, yscale="log")
         axes.legend(ncols=3)
 
     return draw
