@@ -7,7 +7,6 @@ stiffness is variable, its coefficients are quadratic in the position of the sti
 
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 
 import numpy as np
 from scipy import signal
@@ -33,38 +32,30 @@ INERTIA, VISCOUS, COULOMB, OFFSET, SPRING = 0, 1, 2, 3, 4
 """Columns of least squares; those of the spring are the last ones."""
 
 
-@dataclass(frozen=True)
-class _Spring:
-    """tau_e = sum of c_ij x^(2i+1)/(2i+1) l^j with x, l over their ranges; i below n, j below m.
+N = 2
+"""Number of the powers of the deformation."""
 
-    The range of the stiffness motor is its travel in this log: an owner knows it.
+
+def _m(log: JointLog) -> int:
+    """Number of the powers of the position of the stiffness motor."""
+    return 3 if log.theta_c.any() else 1
+
+
+def _travel(log: JointLog) -> float:
+    """Range of the stiffness motor [rad]: its travel in this log, which an owner knows."""
+    return float(np.abs(log.theta_c).max()) or 1.0
+
+
+def _spring(log: JointLog, phi: Array) -> tuple[Array, Array]:
+    """The functions x^(2i+1)/(2i+1) l^j, with x and l over their ranges, i below N, j below m; and
+    their slopes by the deformation [1/rad]. Both [size: samples x N m]; a coefficient is a torque.
     """
-
-    log: JointLog
-
-    n = 2
-
-    @property
-    def m(self) -> int:
-        return 3 if self.log.theta_c.any() else 1
-
-    @property
-    def range_theta_c(self) -> float:
-        return float(np.abs(self.log.theta_c).max()) or 1.0
-
-    def torque(self, phi: Array) -> Array:
-        """The functions [size: samples x n m]. A coefficient is a torque [N.m]."""
-        x = phi / self.log.known["range.phi"]
-        return self._products([x ** (2 * i + 1) / (2 * i + 1) for i in range(self.n)])
-
-    def slope(self, phi: Array) -> Array:
-        """Their derivatives with respect to the deformation [size: samples x n m], [1/rad]."""
-        x = phi / self.log.known["range.phi"]
-        return self._products([x ** (2 * i) / self.log.known["range.phi"] for i in range(self.n)])
-
-    def _products(self, of_phi: list[Array]) -> Array:
-        r = self.log.theta_c / self.range_theta_c
-        return np.column_stack([p * r**j for p in of_phi for j in range(self.m)])
+    scale = log.known["range.phi"]
+    x = phi / scale
+    powers = [(log.theta_c / _travel(log)) ** j for j in range(_m(log))]
+    torques = [x ** (2 * i + 1) / (2 * i + 1) * power for i in range(N) for power in powers]
+    slopes = [x ** (2 * i) / scale * power for i in range(N) for power in powers]
+    return np.column_stack(torques), np.column_stack(slopes)
 
 
 def _filtered_regression(log: JointLog) -> Estimate:
@@ -74,8 +65,7 @@ def _filtered_regression(log: JointLog) -> Estimate:
     priors and noise, and all else keeps its start value.
     """
     known = {"prior.B": STD_B, "prior.D_theta": STD_D, "prior.torque_gain": STD_GAIN}
-    travel = {"range.setPoint": _Spring(log).range_theta_c}
-    return _on_line(log, {"method": "FilteredRegression", **travel, **known})
+    return _on_line(log, {"method": "FilteredRegression", "range.setPoint": _travel(log), **known})
 
 
 def _paper2011(log: JointLog) -> Estimate:
@@ -97,8 +87,7 @@ def _paper2011(log: JointLog) -> Estimate:
 
 def _on_line(log: JointLog, start: dict[str, Value]) -> Estimate:
     """What the estimator of this package says. `start` has the parameters of the method."""
-    spring = _Spring(log)
-    of_log = {"samplePeriod": log.sample_period, "rls.n": spring.n, "rls.m": spring.m}
+    of_log = {"samplePeriod": log.sample_period, "rls.n": N, "rls.m": _m(log)}
     set_point = {"setPoint.offset": 0.0, "setPoint.scale": 1.0}
     estimator = sigmahat.Estimator(
         {**of_log, **set_point, **log.known, **start}, ("sigma", "sigma_std", "confident")
@@ -147,19 +136,19 @@ def _regression(log: JointLog) -> tuple[Array, Array, Array]:
 
     Raises ValueError if the motor does not move.
     """
-    T, g, spring, f = log.sample_period, log.known["motor.gamma"], _Spring(log), _dynamics(log)
+    T, g, f = log.sample_period, log.known["motor.gamma"], _dynamics(log)
     corner = min(10 * f * 2 * T, 0.8)
     butterworth = signal.butter(ORDER, corner, output="sos")
     theta, q = (signal.sosfiltfilt(butterworth, x) for x in (log.theta, log.q))
-    theta_dot, phi = np.gradient(theta, T), q - theta
+    theta_dot, (torque, slope) = np.gradient(theta, T), _spring(log, q - theta)
     columns = (
         *(g**2 * np.gradient(theta_dot, T), g**2 * theta_dot, g * np.sign(theta_dot)),
-        *(np.ones(len(theta)), -spring.torque(phi), g * log.tau),
+        *(np.ones(len(theta)), -torque, g * log.tau),
     )
     keep = max(int(0.8 / (2 * f * 2 * T)), 1)  # the low pass of a decimation is at 0.8 of Nyquist
     chebyshev = signal.cheby1(8, 0.05, 0.8 / keep, output="sos")
     rows = signal.sosfiltfilt(chebyshev, np.column_stack(columns), axis=0)[::keep][EDGE:-EDGE]
-    return rows[:, :-1], rows[:, -1], spring.slope(phi)
+    return rows[:, :-1], rows[:, -1], slope
 
 
 def _dynamics(log: JointLog) -> float:
