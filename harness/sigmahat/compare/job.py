@@ -50,12 +50,6 @@ def performances(scenario: Scenario, recording: Recording) -> dict[str, Performa
     return found
 
 
-def mean_performance(runs: Sequence[Performance]) -> Performance:
-    """The mean of each number over runs."""
-    means = np.mean([list(each.values()) for each in runs], axis=0)
-    return dict(zip(runs[0], means.tolist(), strict=True))
-
-
 @dataclass(frozen=True)
 class Row:
     """One stiffness of a joint in one case, judged by one index."""
@@ -96,7 +90,9 @@ def compare(
     results = dict(zip(runs, run_all(jobs, processes, progress), strict=True))
 
     def mean(i: int, comparison: str) -> Performance:
-        return mean_performance([results[i, seed][comparison] for seed in seeds])
+        each = [results[i, seed][comparison] for seed in seeds]
+        means = np.mean([list(found.values()) for found in each], axis=0)
+        return dict(zip(each[0], means.tolist(), strict=True))
 
     return [
         Row(
