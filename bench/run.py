@@ -25,12 +25,12 @@ def verify(library: ctypes.CDLL) -> None:
         F, y = subjects.regression(size, 2000)
         closed_form = np.linalg.solve(np.eye(size) / subjects.P_0 + F.T @ F, F.T @ y)
         for make in subjects.MAKES:
-            rls = subjects.Recursion(library, make, size)
+            rls = subjects.recursion(library, make, size)
             rls.run(F, y)
-            np.testing.assert_allclose(rls.eta, closed_form, 0, 1e-9, err_msg=make)
+            np.testing.assert_allclose(rls.outputs, closed_form, 0, 1e-9, err_msg=make)
 
     z = subjects.measurements(500)
-    tick = subjects.Ticks(library, "Paper2011")
+    tick = subjects.tick(library, "Paper2011")
     tick.run(z)
     fmu = installed("StiffnessEstimator")
     steps = subjects.Steps(fmu, subjects.MEASUREMENTS, subjects.OUTPUTS, z)

@@ -17,11 +17,8 @@ namespace {
 class Recursion {
 public:
     virtual ~Recursion() = default;
-    // Takes samples F [size: samples x size], y [size: samples] in order.
-    virtual void run(const double *F, const double *y, int samples) = 0;
-    virtual void eta(double *) const
-    {
-    }
+    // Takes samples F [size: samples x size], y [size: samples] in order, and writes the estimate.
+    virtual void run(const double *F, const double *y, int samples, double *eta) = 0;
 };
 
 class Own final : public Recursion {
@@ -33,7 +30,7 @@ public:
         sh_least_squares_start(&rls, size, nullptr, P_0);
     }
 
-    void run(const double *F, const double *y, int samples) override
+    void run(const double *F, const double *y, int samples, double *eta) override
     {
         sh_innovation innovation;
 
@@ -41,11 +38,7 @@ public:
             const double *row = F + k * rls.P.size;
             sh_least_squares_update(&rls, SH_RLS_STANDARD, 1.0, row, y[k], &innovation);
         }
-    }
-
-    void eta(double *to) const override
-    {
-        std::copy_n(rls.eta, rls.P.size, to);
+        std::copy_n(rls.eta, rls.P.size, eta);
     }
 };
 
@@ -62,7 +55,7 @@ public:
     {
     }
 
-    void run(const double *F, const double *y, int samples) override
+    void run(const double *F, const double *y, int samples, double *eta) override
     {
         for (int k = 0; k < samples; ++k) {
             const Eigen::Map<const Vector> f(F + k * size);
@@ -71,11 +64,7 @@ public:
             estimate += gain * (y[k] - f.dot(estimate));
             P.noalias() -= gain * Pf.transpose();
         }
-    }
-
-    void eta(double *to) const override
-    {
-        Eigen::Map<Vector>{to} = estimate;
+        Eigen::Map<Vector>{eta} = estimate;
     }
 };
 
@@ -92,7 +81,7 @@ public:
         }
     }
 
-    void run(const double *F, const double *, int samples) override
+    void run(const double *F, const double *, int samples, double *) override
     {
         for (int k = 0; k < samples; ++k) {
             update(F + k * size);
@@ -164,14 +153,9 @@ Recursion *covariance_start(int size, double P_0)
     return start<Covariance>(size, P_0);
 }
 
-void recursion_run(Recursion *rls, const double *F, const double *y, int samples)
+void recursion_run(Recursion *rls, const double *F, const double *y, int samples, double *eta)
 {
-    rls->run(F, y, samples);
-}
-
-void recursion_eta(const Recursion *rls, double *eta)
-{
-    rls->eta(eta);
+    rls->run(F, y, samples, eta);
 }
 
 // A new estimator of the AwAS with n = 6, m = 3, in the modality Residual; FilteredRegression

@@ -45,20 +45,28 @@ class Subject:
     """It runs only in every round whose number is a multiple of this."""
 
 
-def started(library: ctypes.CDLL, maker: str, *arguments: Any) -> ctypes.c_void_p:
-    """The object that <maker>_start makes. Raises RuntimeError if it is NULL."""
-    start = library[f"{maker}_start"]
-    start.restype = ctypes.c_void_p
-    made = ctypes.c_void_p(start(*arguments))
-    if not made:
-        raise RuntimeError(f"{maker}_start{arguments} refused")
-    return made
-
-
 def doubles(array: Array) -> Any:
     """Pointer to a contiguous array. It is valid only as long as the array exists."""
     assert array.flags.c_contiguous and array.dtype == np.float64
     return array.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
+
+
+class Native:
+    """An object of the shared library that processes samples; its outputs after the last one."""
+
+    def __init__(
+        self, library: ctypes.CDLL, kind: str, outputs: int, maker: str, *arguments: Any
+    ) -> None:
+        """<maker>_start makes it, <kind>_run runs it. Raises RuntimeError if it is refused."""
+        start, self._run = library[f"{maker}_start"], library[f"{kind}_run"]
+        start.restype = ctypes.c_void_p
+        self._state = ctypes.c_void_p(start(*arguments))
+        if not self._state:
+            raise RuntimeError(f"{maker}_start{arguments} refused")
+        self.outputs = np.zeros(outputs)
+
+    def run(self, *samples: Array) -> None:
+        self._run(self._state, *map(doubles, samples), len(samples[0]), doubles(self.outputs))
 
 
 # Least squares
@@ -76,30 +84,16 @@ def regression(size: int, samples: int) -> tuple[Array, Array]:
     return np.ascontiguousarray(F), y
 
 
-class Recursion:
-    """A recursion of the shared library."""
-
-    def __init__(self, library: ctypes.CDLL, make: str, size: int) -> None:
-        self._library, self._size = library, size
-        self._state = started(library, make, size, ctypes.c_double(P_0))
-
-    @property
-    def eta(self) -> Array:
-        """Estimate."""
-        eta = np.zeros(self._size)
-        self._library.recursion_eta(self._state, doubles(eta))
-        return eta
-
-    def run(self, F: Array, y: Array) -> None:
-        """Processes all samples."""
-        self._library.recursion_run(self._state, doubles(F), doubles(y), len(y))
+def recursion(library: ctypes.CDLL, make: str, size: int) -> Native:
+    """Least squares by one of MAKES, whose outputs are its estimate, or the covariance alone."""
+    return Native(library, "recursion", size, make, size, ctypes.c_double(P_0))
 
 
 def least_squares(library: ctypes.CDLL, size: int, samples: int) -> Iterator[Subject]:
     """All recursions, and the covariance update alone as the reference."""
     data = regression(size, samples)
     for make in (*MAKES, "covariance"):
-        yield Subject(f"{make} {size}", partial(Recursion(library, make, size).run, *data), samples)
+        yield Subject(f"{make} {size}", partial(recursion(library, make, size).run, *data), samples)
 
 
 # Ticks
@@ -112,16 +106,9 @@ def measurements(samples: int) -> Array:
     return np.column_stack([run.plant[name] for name in MEASURED])
 
 
-class Ticks:
+def tick(library: ctypes.CDLL, method: str) -> Native:
     """The estimator of the C library, called without an FMU."""
-
-    def __init__(self, library: ctypes.CDLL, method: str) -> None:
-        self._library, self._state = library, started(library, "tick", method.encode())
-        self.outputs = np.zeros(len(OUTPUTS))
-
-    def run(self, z: Array) -> None:
-        """Processes all samples."""
-        self._library.tick_run(self._state, doubles(z), len(z), doubles(self.outputs))
+    return Native(library, "tick", len(OUTPUTS), "tick", method.encode())
 
 
 class Steps:
@@ -157,7 +144,7 @@ class Steps:
 def ticks(library: ctypes.CDLL, z: Array) -> Iterator[Subject]:
     """The tick of the C library, and the same in the FMU."""
     for method in METHODS:
-        yield Subject(f"tick {method}", partial(Ticks(library, method).run, z), len(z))
+        yield Subject(f"tick {method}", partial(tick(library, method).run, z), len(z))
     fmu = installed("StiffnessEstimator")
     yield Subject("FMU", Steps(fmu, MEASUREMENTS, OUTPUTS, z).run, len(z))
 

@@ -17,7 +17,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from rivals.joint import Drive, Friction, Instruments, Joint, Link, Motor, Sheet, Spring, Tendons
+from rivals.joint import Drive, Friction, Instruments, Joint, Link, Motor, Spring, Tendons
 from rivals.records import STD_B, STD_D, STD_GAIN, Array
 
 Range = tuple[float, float]
@@ -186,14 +186,14 @@ def _stiffness(rng: Rng, limits: Range, load: float) -> float:
     )
 
 
-def _sheet(rng: Rng) -> Sheet:
-    return Sheet(
-        B=1 + STD_B * float(rng.standard_normal()),
-        D=1 + STD_D * float(rng.standard_normal()),
-        coulomb=_even(rng, COULOMB_KNOWN),
-        phi=_even(rng, MARGIN),
-        tau_e=_even(rng, MARGIN),
-    )
+def _sheet(rng: Rng) -> dict[str, float]:
+    return {
+        "motor.B": 1 + STD_B * float(rng.standard_normal()),
+        "motor.D_theta": 1 + STD_D * float(rng.standard_normal()),
+        "prior.tau_coulomb": _even(rng, COULOMB_KNOWN),
+        "range.phi": _even(rng, MARGIN),
+        "prior.tau_e": _even(rng, MARGIN),
+    }
 
 
 def _instruments(rng: Rng, peak: float, phi: float) -> Instruments:

@@ -1,6 +1,7 @@
 """What a joint is made of. `draw.py` draws the values, `simulation.py` builds what they say."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from rivals.records import Array
@@ -152,17 +153,6 @@ class Instruments:
     counts_q: int
 
 
-@dataclass(frozen=True)
-class Sheet:
-    """How wrong the owner's data are: factors to the true values."""
-
-    B: float
-    D: float
-    coulomb: float  # the largest plausible one by the dry friction at rest
-    phi: float  # the largest expected one by the largest one
-    tau_e: float
-
-
 @dataclass(frozen=True, kw_only=True)
 class Joint:
     """Motors, links, drives and instruments: one of each but for an arm, which has two.
@@ -174,7 +164,8 @@ class Joint:
     links: tuple[Link, ...]
     drives: tuple[Drive, ...]
     instruments: tuple[Instruments, ...]
-    sheet: Sheet
+    sheet: Mapping[str, float]
+    """How wrong the owner's data are: factors to true values, by start values of the estimator."""
     gravity: float  # 0 where the axis is vertical [m/s2]
     springs: tuple[Spring, ...] = ()  # one a motor, or none beside tendons
     tendons: Tendons | None = None

@@ -6,14 +6,13 @@ stiffness is variable, its coefficients are quadratic in the position of the sti
 """
 
 import time
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
 
 import numpy as np
 from scipy import signal
 
 import sigmahat
-from rivals.records import STD_B, STD_D, STD_GAIN, Array, Estimate, JointLog, Known
+from rivals.records import STD_B, STD_D, STD_GAIN, Array, Estimate, JointLog
 from sigmahat.fmi.instance import Value
 
 CONFIDENT = 0.1
@@ -33,38 +32,30 @@ INERTIA, VISCOUS, COULOMB, OFFSET, SPRING = 0, 1, 2, 3, 4
 """Columns of least squares; those of the spring are the last ones."""
 
 
-@dataclass(frozen=True)
-class _Spring:
-    """tau_e = sum of c_ij x^(2i+1)/(2i+1) l^j with x, l over their ranges; i below n, j below m.
+N = 2
+"""Number of the powers of the deformation."""
 
-    The range of the stiffness motor is its travel in this log: an owner knows it.
+
+def _m(log: JointLog) -> int:
+    """Number of the powers of the position of the stiffness motor."""
+    return 3 if log.theta_c.any() else 1
+
+
+def _travel(log: JointLog) -> float:
+    """Range of the stiffness motor [rad]: its travel in this log, which an owner knows."""
+    return float(np.abs(log.theta_c).max()) or 1.0
+
+
+def _spring(log: JointLog, phi: Array) -> tuple[Array, Array]:
+    """The functions x^(2i+1)/(2i+1) l^j, with x and l over their ranges, i below N, j below m; and
+    their slopes by the deformation [1/rad]. Both [size: samples x N m]; a coefficient is a torque.
     """
-
-    log: JointLog
-
-    n = 2
-
-    @property
-    def m(self) -> int:
-        return 3 if self.log.theta_c.any() else 1
-
-    @property
-    def range_theta_c(self) -> float:
-        return float(np.abs(self.log.theta_c).max()) or 1.0
-
-    def torque(self, phi: Array) -> Array:
-        """The functions [size: samples x n m]. A coefficient is a torque [N.m]."""
-        x = phi / self.log.known.range_phi
-        return self._products([x ** (2 * i + 1) / (2 * i + 1) for i in range(self.n)])
-
-    def slope(self, phi: Array) -> Array:
-        """Their derivatives with respect to the deformation [size: samples x n m], [1/rad]."""
-        x = phi / self.log.known.range_phi
-        return self._products([x ** (2 * i) / self.log.known.range_phi for i in range(self.n)])
-
-    def _products(self, of_phi: list[Array]) -> Array:
-        r = self.log.theta_c / self.range_theta_c
-        return np.column_stack([p * r**j for p in of_phi for j in range(self.m)])
+    scale = log.known["range.phi"]
+    x = phi / scale
+    powers = [(log.theta_c / _travel(log)) ** j for j in range(_m(log))]
+    torques = [x ** (2 * i + 1) / (2 * i + 1) * power for i in range(N) for power in powers]
+    slopes = [x ** (2 * i) / scale * power for i in range(N) for power in powers]
+    return np.column_stack(torques), np.column_stack(slopes)
 
 
 def _filtered_regression(log: JointLog) -> Estimate:
@@ -73,20 +64,8 @@ def _filtered_regression(log: JointLog) -> Estimate:
     Parameters are as docs/filtered-regression.md advises: what the data sheet says becomes ranges,
     priors and noise, and all else keeps its start value.
     """
-    known = log.known
-    return _on_line(
-        log,
-        {
-            "method": "FilteredRegression",
-            "range.phi": known.range_phi,
-            "range.setPoint": _Spring(log).range_theta_c,
-            "prior.tau_e": known.range_tau_e,
-            "prior.B": STD_B,
-            "prior.D_theta": STD_D,
-            "prior.tau_coulomb": known.tau_coulomb,
-            "prior.torque_gain": STD_GAIN,
-        },
-    )
+    known = {"prior.B": STD_B, "prior.D_theta": STD_D, "prior.torque_gain": STD_GAIN}
+    return _on_line(log, {"method": "FilteredRegression", "range.setPoint": _travel(log), **known})
 
 
 def _paper2011(log: JointLog) -> Estimate:
@@ -100,7 +79,7 @@ def _paper2011(log: JointLog) -> Estimate:
     times 0.3 rad, so that a single sample counts 1e7 times as much as the start; c is such that a
     sample at the range of the deformation does so here, too.
     """
-    c = SAMPLE / (P_0 * log.known.range_phi**2)
+    c = SAMPLE / (P_0 * log.known["range.phi"] ** 2)
     found = _on_line(log, {"method": "Paper2011", "rls.P_0": P_0, "rls.c": c})
     nothing = np.full(len(log.theta), np.nan)
     return Estimate(found.stiffness, nothing, np.zeros(len(nothing), bool), found.seconds)
@@ -108,23 +87,10 @@ def _paper2011(log: JointLog) -> Estimate:
 
 def _on_line(log: JointLog, start: dict[str, Value]) -> Estimate:
     """What the estimator of this package says. `start` has the parameters of the method."""
-    known, spring = log.known, _Spring(log)
+    of_log = {"samplePeriod": log.sample_period, "rls.n": N, "rls.m": _m(log)}
+    set_point = {"setPoint.offset": 0.0, "setPoint.scale": 1.0}
     estimator = sigmahat.Estimator(
-        {
-            "samplePeriod": log.sample_period,
-            "motor.gamma": known.gamma,
-            "motor.B": known.B,
-            "motor.D_theta": known.D_theta,
-            "encoder.theta": float(known.counts_theta),
-            "encoder.q": float(known.counts_q),
-            "setPoint.offset": 0.0,
-            "setPoint.scale": 1.0,
-            "rls.n": spring.n,
-            "rls.m": spring.m,
-            "noise.tau": known.noise_tau,
-            **start,
-        },
-        ("sigma", "sigma_std", "confident"),
+        {**of_log, **set_point, **log.known, **start}, ("sigma", "sigma_std", "confident")
     )
     begin = time.perf_counter()
     found = estimator.run(log.theta, log.q, log.tau, log.theta_c)
@@ -170,24 +136,24 @@ def _regression(log: JointLog) -> tuple[Array, Array, Array]:
 
     Raises ValueError if the motor does not move.
     """
-    T, g, spring, f = log.sample_period, log.known.gamma, _Spring(log), _dynamics(log)
+    T, g, f = log.sample_period, log.known["motor.gamma"], _dynamics(log)
     corner = min(10 * f * 2 * T, 0.8)
     butterworth = signal.butter(ORDER, corner, output="sos")
     theta, q = (signal.sosfiltfilt(butterworth, x) for x in (log.theta, log.q))
-    theta_dot, phi = np.gradient(theta, T), q - theta
+    theta_dot, (torque, slope) = np.gradient(theta, T), _spring(log, q - theta)
     columns = (
         *(g**2 * np.gradient(theta_dot, T), g**2 * theta_dot, g * np.sign(theta_dot)),
-        *(np.ones(len(theta)), -spring.torque(phi), g * log.tau),
+        *(np.ones(len(theta)), -torque, g * log.tau),
     )
     keep = max(int(0.8 / (2 * f * 2 * T)), 1)  # the low pass of a decimation is at 0.8 of Nyquist
     chebyshev = signal.cheby1(8, 0.05, 0.8 / keep, output="sos")
     rows = signal.sosfiltfilt(chebyshev, np.column_stack(columns), axis=0)[::keep][EDGE:-EDGE]
-    return rows[:, :-1], rows[:, -1], spring.slope(phi)
+    return rows[:, :-1], rows[:, -1], slope
 
 
 def _dynamics(log: JointLog) -> float:
     """The frequency of the dynamics [Hz]. Raises ValueError if the motor does not move."""
-    T, counts = log.sample_period, log.known.counts_theta
+    T, counts = log.sample_period, log.known["encoder.theta"]
     segment = min(len(log.theta), round(8 / T))
     f, density = signal.welch(log.theta, 1 / T, nperseg=segment, detrend="linear")
     std = 2 * np.pi / counts / np.sqrt(12)  # of the rounding of the encoder
@@ -199,14 +165,14 @@ def _dynamics(log: JointLog) -> float:
     return float(f[np.searchsorted(share, DYNAMICS)])
 
 
-def _solve(X: Array, y: Array, known: Known) -> tuple[Array, Array]:
+def _solve(X: Array, y: Array, known: Mapping[str, float]) -> tuple[Array, Array]:
     """Coefficients and covariance. The variance of the rows is that of their residual."""
     scale = np.sqrt(np.mean(X**2, axis=0))
     X = X / scale
     mean, information = np.zeros(len(scale)), np.zeros(len(scale))  # of the data sheet
     for column, value, relative in (
-        (INERTIA, known.B, STD_B),
-        (VISCOUS, known.D_theta, STD_D),
+        (INERTIA, known["motor.B"], STD_B),
+        (VISCOUS, known["motor.D_theta"], STD_D),
     ):
         mean[column] = value * scale[column]
         information[column] = (relative * value * scale[column]) ** -2

@@ -1,5 +1,6 @@
 """What the joints hand to the methods, and what the methods return."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,21 +12,6 @@ Array = NDArray[np.float64]
 STD_B = 0.05
 STD_D = 0.2
 STD_GAIN = 0.015  # of the measured torque, which no log shows
-
-
-@dataclass(frozen=True)
-class Known:
-    """What the owner of a joint knows about it. Values are data sheet values, so they are wrong."""
-
-    gamma: float  # gear ratio
-    B: float  # motor inertia on the motor's axis [kg.m2]
-    D_theta: float  # viscous friction on the motor's axis [N.m.s/rad]
-    tau_coulomb: float  # largest plausible Coulomb friction on the motor's axis [N.m]
-    noise_tau: float  # standard deviation of the measured motor torque [N.m]
-    counts_theta: int  # counts of the motor encoder per turn behind the gear
-    counts_q: int  # counts of the link encoder per turn
-    range_phi: float  # largest expected deformation [rad]
-    range_tau_e: float  # largest expected torque of the spring [N.m]
 
 
 @dataclass(frozen=True)
@@ -41,7 +27,8 @@ class JointLog:
     theta_c: Array  # measured position of the stiffness motor; 0 where there is none [rad]
     tau_e: Array  # true torque of the spring, which acts on the motor [N.m]
     stiffness: Array  # true slope d tau_e / d phi, phi = q - theta [N.m/rad]
-    known: Known
+    known: Mapping[str, float]
+    """What the owner knows, from a data sheet that is wrong: start values of the estimator."""
 
 
 @dataclass(frozen=True)

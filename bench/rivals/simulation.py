@@ -16,7 +16,7 @@ import numpy as np
 
 from rivals.draw import KINDS, SAMPLE_PERIOD, TIP, drawn
 from rivals.joint import Drive, Instruments, Joint, Motor
-from rivals.records import Array, JointLog, Known
+from rivals.records import Array, JointLog
 from sigmahat.files.templates import environment
 
 STEP = 1e-4  # of the physics [s]
@@ -49,8 +49,18 @@ def make(kind: str, seed: int) -> JointLog:
 
 def log(kind: str, seed: int, run: Run, joint: Joint, rng: np.random.Generator) -> JointLog:
     """The log of a run of a joint; `rng` draws the noise."""
-    sheet, motor = joint.sheet, joint.motors[joint.observed]
-    tools = joint.instruments[joint.observed]
+    motor, tools = joint.motors[joint.observed], joint.instruments[joint.observed]
+    true = {
+        "motor.gamma": motor.gear,
+        "motor.B": motor.B,
+        "motor.D_theta": motor.D,
+        "prior.tau_coulomb": motor.friction.at_rest,
+        "noise.tau": tools.noise,
+        "encoder.theta": float(tools.counts_theta),
+        "encoder.q": float(tools.counts_q),
+        "range.phi": float(np.abs(run["phi"]).max()),
+        "prior.tau_e": float(np.abs(run["tau_e"]).max()),
+    }
     torque = run["command" if tools.commanded else "late"]
     return JointLog(
         kind=kind,
@@ -62,17 +72,7 @@ def log(kind: str, seed: int, run: Run, joint: Joint, rng: np.random.Generator) 
         theta_c=run["theta_c"],
         tau_e=run["tau_e"],
         stiffness=run["stiffness"],
-        known=Known(
-            gamma=motor.gear,
-            B=sheet.B * motor.B,
-            D_theta=sheet.D * motor.D,
-            tau_coulomb=sheet.coulomb * motor.friction.at_rest,
-            noise_tau=tools.noise,
-            counts_theta=tools.counts_theta,
-            counts_q=tools.counts_q,
-            range_phi=sheet.phi * float(np.abs(run["phi"]).max()),
-            range_tau_e=sheet.tau_e * float(np.abs(run["tau_e"]).max()),
-        ),
+        known={name: joint.sheet.get(name, 1.0) * value for name, value in true.items()},
     )
 
 

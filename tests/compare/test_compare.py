@@ -14,7 +14,7 @@ from regression_joint import WITHOUT_MISFITS
 from sigmahat.compare import conditions
 from sigmahat.compare import table as labels
 from sigmahat.compare.conditions import JOINTS, METHODS, REGRESSION, Joint
-from sigmahat.compare.job import Row, compare
+from sigmahat.compare.job import MOTOR, Row, compare
 from sigmahat.compare.table import table
 
 FRICTION = "r(0) = 70 mm, Coulomb friction 0.02 N.m"
@@ -80,7 +80,7 @@ def test_finds_the_error_of_the_friction(runs: list[list[Row]]) -> None:
         group = labels.group(row)
         bounds = BOUNDS[group, labels.case(row.case)]
         if math.isfinite(bounds[FREQUENCIES.index(motion)]):
-            D_theta = row.performance[REGRESSION].D_theta
+            D_theta = row.performance[REGRESSION]["D_theta"]
             is_hard = motion == "20 Hz" or (group, motion) == (FRICTION, "0.3 Hz")
             share = 0.25 if is_hard else 0.1
             assert D_theta == pytest.approx(1e-3, abs=share * 1e-4), row
@@ -113,9 +113,9 @@ def test_printed_table(runs: list[list[Row]]) -> None:
         assert ("after" in name) == (row.judged_from > 0)
         errors = [row.error(method) for method in METHODS]
         assert [float(cell) for cell in cells[:2]] == pytest.approx(errors, rel=0.005)
-        assert float(cells[2]) == pytest.approx(regression.sigma_std, abs=0.005)
-        assert float(cells[3]) == pytest.approx(regression.inside, abs=0.5)
-        motors = [regression.D_theta, regression.B, regression.tau_coulomb]
+        assert float(cells[2]) == pytest.approx(regression["sigma_std"], abs=0.005)
+        assert float(cells[3]) == pytest.approx(regression["inside"], abs=0.5)
+        motors = [regression[name] for name in MOTOR]
         found = [float("nan" if cell.strip() == "-" else cell) for cell in cells[4:]]
         assert found == pytest.approx(motors, rel=1e-3, nan_ok=True)
 
@@ -137,5 +137,5 @@ def test_command(shell: Shell, monkeypatch: pytest.MonkeyPatch) -> None:
         words = (labels.motion(row.joint), labels.case_and_part(row), method)
         assert (line["joint"], line["case"], line["method"]) == words
         assert float(line["MSREP [%]"]) == row.error(method)
-        D_theta = row.performance[method].D_theta
+        D_theta = row.performance[method]["D_theta"]
         assert line["D_theta_hat [N.m.s/rad]"] == ("" if math.isnan(D_theta) else str(D_theta))

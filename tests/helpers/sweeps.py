@@ -4,7 +4,9 @@ import shlex
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 QUICK = "sweep --modality RESIDUAL"
 """One run takes a fraction of a second."""
@@ -21,10 +23,10 @@ def records(path: Path) -> list[bytes]:
     return path.read_bytes().splitlines(keepends=True)[1:] if path.exists() else []
 
 
-def wait_for_records(path: Path, count: int, process: subprocess.Popen[str]) -> None:
-    """Waits until some runs are done, but not all of them."""
+def wait_until(is_so: Callable[[], bool], process: subprocess.Popen[Any]) -> None:
+    """Waits while a process goes on."""
     deadline = time.monotonic() + 300
-    while len(records(path)) < count:
+    while not is_so():
         assert process.poll() is None, process.communicate()
         assert time.monotonic() < deadline
         time.sleep(0.02)

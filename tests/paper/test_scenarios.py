@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from recordings import eight_seeds, one_seed
-from sigmahat.paper.reproduction import Result, reproduce
+from sigmahat.paper.reproduction import Result
 from sigmahat.paper.scenarios import scenario
 from sigmahat.runs.scenario import nominal_awas
 
@@ -41,19 +41,6 @@ def test_noise_differs_between_seeds_and_nothing_else_does() -> None:
     assert len({each["RESIDUAL"].mse for each in eight_seeds("table1").indices}) == 8
     # MODEL sees no noise.
     assert len({each["MODEL"].mse for each in eight_seeds("table1").indices}) == 1
-
-
-def test_result_does_not_depend_on_the_number_of_processes() -> None:
-    alone = one_seed("table1")
-    assert alone.indices[0] == eight_seeds("table1").indices[0]
-    one_process = reproduce(scenario("table1"), [1, 2], processes=1)
-    assert one_process.indices == list(eight_seeds("table1").indices[:2])
-    for series, other in (
-        (alone.recording.plant, one_process.recording.plant),
-        (alone.recording.estimators["RESIDUAL"], one_process.recording.estimators["RESIDUAL"]),
-    ):
-        for output in series.values:
-            np.testing.assert_array_equal(series[output], other[output])
 
 
 def test_constant_factors_show_what_the_enhanced_one_is_for() -> None:

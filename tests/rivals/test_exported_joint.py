@@ -11,7 +11,7 @@ import tomlkit
 
 from recorded_logs import write_log
 from rivals.draw import SAMPLE_PERIOD
-from rivals.joint import Drive, Friction, Instruments, Joint, Link, Motor, Sheet, Spring
+from rivals.joint import Drive, Friction, Instruments, Joint, Link, Motor, Spring
 from rivals.records import Array
 from rivals.simulation import run
 from sigmahat.cli import main
@@ -38,7 +38,7 @@ def drawn(seed: int) -> Joint:
         gravity=9.81,
         drives=(),
         instruments=(Instruments(True, 0.0, 1e-6, 1.0, NOISE, counts, COUNTS[1]),),
-        sheet=Sheet(1, 1, 1, 1, 1),
+        sheet={},
     )
 
 

@@ -109,15 +109,15 @@ def test_a_log_is_what_the_instruments_make_of_the_run(kind: str) -> None:
     made = log(kind, SEED, x, joint, np.random.default_rng(SEED))
     known = made.known
     for read, true, counts in (
-        (made.theta, x["theta"], known.counts_theta),
-        (made.q, x["theta"] + x["phi"], known.counts_q),
+        (made.theta, x["theta"], known["encoder.theta"]),
+        (made.q, x["theta"] + x["phi"], known["encoder.q"]),
     ):
         count = 2 * math.pi / counts
         assert np.abs(read - true).max() <= count / 2 * (1 + 1e-9)
         np.testing.assert_allclose(read / count, np.round(read / count), atol=1e-6)
     noise = made.tau - tools.gain * x["command" if tools.commanded else "late"]
-    assert np.std(noise) == pytest.approx(known.noise_tau, rel=0.06)
-    assert known.range_phi >= np.abs(x["phi"]).max()
-    assert known.range_tau_e >= np.abs(made.tau_e).max()
-    assert abs(known.B / motor.B - 1) < 5 * STD_B
-    assert abs(known.D_theta / motor.D - 1) < 5 * STD_D
+    assert np.std(noise) == pytest.approx(known["noise.tau"], rel=0.06)
+    assert known["range.phi"] >= np.abs(x["phi"]).max()
+    assert known["prior.tau_e"] >= np.abs(made.tau_e).max()
+    assert abs(known["motor.B"] / motor.B - 1) < 5 * STD_B
+    assert abs(known["motor.D_theta"] / motor.D - 1) < 5 * STD_D

@@ -10,9 +10,8 @@ from functools import partial
 import numpy as np
 import pytest
 
-from sigmahat.paper.scenarios import scenario
-from sigmahat.runs.engine import measured, run_all
-from sigmahat.runs.metrics import INDICES, Indices, indices, mean_error, mean_interval, mse, msrep
+from sigmahat.runs.engine import run_all
+from sigmahat.runs.metrics import indices, mean_error, mean_interval, mse, msrep
 from sigmahat.runs.pool import WorkersLostError, spread
 
 
@@ -51,19 +50,6 @@ def test_a_process_that_is_ended_from_outside() -> None:
     jobs: list[Callable[[], int]] = [die, partial(after, 0.0, 1)]
     with pytest.raises(WorkersLostError, match="a process was ended from outside"):
         run_all(jobs, processes=1)
-
-
-def test_only_what_is_measured_comes_back() -> None:
-    short = scenario("single-linear")
-    assert measured(short, 1, lambda scenario, recording: len(recording.t)) == short.steps + 1
-
-
-def test_every_index_is_described_once() -> None:
-    assert tuple(INDICES) == tuple(Indices.__dataclass_fields__)
-    assert all(field == index.field for field, index in INDICES.items())
-    titles = [index.title("after 1 s" if index.settled else "") for index in INDICES.values()]
-    assert titles[1::3] == ["MSREP [%]", "MSREP after 1 s [%]"]
-    assert len(set(titles)) == len(titles)
 
 
 # ---- indices -------------------------------------------------------------------------------------
@@ -132,13 +118,6 @@ def test_relative_error_of_zero_stiffness_is_refused() -> None:
             index([0.0, 1.0], [0.0, 1.0])
         with pytest.raises(ValueError, match="zero"):
             index([1.0, 1.0], [1.0, 1.0], [1.0, 0.0])
-
-
-def test_interval_by_hand() -> None:
-    # Quantile 0.975 of Student's t with 2 degrees of freedom: 4.30265.
-    mean, half_width = mean_interval([1.0, 2.0, 3.0])
-    assert mean == 2.0
-    assert half_width == pytest.approx(4.302652730 / math.sqrt(3), rel=1e-9)
 
 
 def test_interval_of_equal_values_is_exactly_zero() -> None:

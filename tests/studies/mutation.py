@@ -18,13 +18,14 @@ import subprocess
 import sys
 import tempfile
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
 TESTS = Path(__file__).resolve().parents[1]
 LIBRARY = TESTS.parent / "c"
+FILE = "libsigmahat_test_driver.so"
 SOURCES = {file.name: file for file in sorted(LIBRARY.rglob("*.c"))}
 NUMBER, SEED = 6, "fresh-b"  # the sample of the test in the gate
 LIMIT = 2.0
@@ -124,39 +125,16 @@ def candidates(file: Path, seed: str) -> list[tuple[Mutant, ...]]:
     return [mutants for _, mutants in sorted(places, key=lambda place: place[0])]
 
 
-class Bench:
-    """Compiles mutants and links each with the object files of the unchanged sources."""
-
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder
-        run = TESTS / "drivers" / "run.c"
-        self.objects: dict[str, Path] = {}
-        for file in (*SOURCES.values(), run):
-            self.objects[file.name] = folder / f"{file.stem}.o"
-            if not self.compile(file, self.objects[file.name]):
-                raise RuntimeError(f"{file} does not compile")
-
-    def compile(self, source: Path, target: Path) -> bool:
-        command = ["gcc", *FLAGS, "-c", str(source), "-o", str(target)]
-        return subprocess.run(command, capture_output=True).returncode == 0
-
-    def link(self, tree: Path, objects: Mapping[str, Path]) -> Path:
-        library = tree / "libsigmahat_test_driver.so"
-        command = ["gcc", "-shared", *map(str, objects.values()), "-lm", "-o", str(library)]
-        subprocess.run(command, check=True)
-        return tree
-
-    def build(self, mutant: Mutant) -> Path | None:
-        """Build tree with the library of a mutant. None if it is not C, or is the same program."""
-        tree = Path(tempfile.mkdtemp(dir=self.folder))
-        source = tree / mutant.file
-        source.write_text(mutant.text())
-        changed = tree / "mutant.o"
-        original = self.objects[mutant.file].read_bytes()
-        if not self.compile(source, changed) or changed.read_bytes() == original:
-            shutil.rmtree(tree)
-            return None
-        return self.link(tree, {**self.objects, mutant.file: changed})
+def build(folder: Path, mutant: Mutant | None = None) -> Path | None:
+    """A new build tree with the library, or with that of a mutant. None if the mutant is not C."""
+    tree = Path(tempfile.mkdtemp(dir=folder))
+    sources = {**SOURCES, "run.c": TESTS / "drivers" / "run.c"}
+    if mutant:
+        sources[mutant.file] = tree / mutant.file
+        sources[mutant.file].write_text(mutant.text())
+    command = ["gcc", *FLAGS, "-shared", *map(str, sources.values()), "-lm", "-o", str(tree / FILE)]
+    done = subprocess.run(command, capture_output=True)
+    return tree if done.returncode == 0 else None
 
 
 def files_for(source: str = "") -> list[str]:
@@ -193,22 +171,24 @@ def shares(number: int) -> dict[str, int]:
     return {file: max(2, round(number * count / total)) for file, count in places.items()}
 
 
-def mutants(bench: Bench, file: str, number: int, seed: str) -> Iterator[tuple[Mutant, Path]]:
+def mutants(folder: Path, file: str, number: int, seed: str) -> Iterator[tuple[Mutant, Path]]:
     """The first mutants of a file that compile to a different program, with their build trees."""
+    unchanged = (folder / FILE).read_bytes()
     for choices in candidates(SOURCES[file], seed):
         if number == 0:
             return
         for mutant in choices:
-            if tree := bench.build(mutant):
+            tree = build(folder, mutant)
+            if tree and (tree / FILE).read_bytes() != unchanged:
                 yield mutant, tree
                 number -= 1
                 break
 
 
-def judge(bench: Bench, file: str, number: int, seed: str, limit: int) -> Counter[str]:
+def judge(folder: Path, file: str, number: int, seed: str, limit: int) -> Counter[str]:
     """Runs the tests with mutants of a file: how many were killed, survived, or are equivalent."""
     outcome: Counter[str] = Counter()
-    for mutant, tree in mutants(bench, file, number, seed):
+    for mutant, tree in mutants(folder, file, number, seed):
         passed = passes(tree, files_for(file), limit)
         same = any(file == where and mutant.makes(code) for where, code, _ in EQUIVALENT)
         result = "killed" if not passed else "equivalent" if same else "survived"
@@ -224,14 +204,16 @@ def run(folder: Path, number: int, seed: str) -> Counter[str]:
     Returns how many were killed, survived, or are equivalent. Raises RuntimeError if the tests do
     not pass with the code as it is.
     """
-    bench = Bench(folder)
-    unchanged = bench.link(Path(tempfile.mkdtemp(dir=folder)), bench.objects)
+    unchanged = build(folder)
+    if unchanged is None:
+        raise RuntimeError("the library does not compile")
+    shutil.copy(unchanged / FILE, folder)
     before = children_seconds()
     if not passes(unchanged, files_for()):
         raise RuntimeError("the tests fail without any change")
     limit = math.ceil(LIMIT * (children_seconds() - before))
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        jobs = [pool.submit(judge, bench, *part, seed, limit) for part in shares(number).items()]
+        jobs = [pool.submit(judge, folder, *part, seed, limit) for part in shares(number).items()]
         return sum((job.result() for job in jobs), Counter())
 
 

@@ -16,7 +16,7 @@ from command_line import Shell
 from sigmahat.runs.pool import WorkerError
 from sigmahat.sweep.plan import read_plan
 from sigmahat.sweep.preparation import execute, fmu_digest
-from sweeps import QUICK, records, start, wait_for_records
+from sweeps import QUICK, records, start, wait_until
 
 DASK = [sys.executable, "-m", "dask"]
 HERE = ["--host", "127.0.0.1", "--no-dashboard", "--scheduler-file", "scheduler.json"]
@@ -51,11 +51,7 @@ def scheduler(folder: Path) -> Iterator[subprocess.Popen[bytes]]:
 def address(scheduler: subprocess.Popen[bytes], folder: Path) -> str:
     """Of the scheduler, once it is there."""
     file = folder / "scheduler.json"
-    deadline = time.monotonic() + 300
-    while not file.exists() or not file.read_text():
-        assert scheduler.poll() is None
-        assert time.monotonic() < deadline
-        time.sleep(0.1)
+    wait_until(lambda: file.exists() and bool(file.read_text()), scheduler)
     address: str = json.loads(file.read_text())["address"]
     return address
 
@@ -100,7 +96,7 @@ def test_one_of_two_workers_killed(address: str, folder: Path, shell: Shell) -> 
         process = start(f"{command} --scheduler {address} --out cluster")
         # WHEN a worker is killed while both have work
         path = Path("cluster", "runs.jsonl")
-        wait_for_records(path, 3, process)
+        wait_until(lambda: len(records(path)) >= 3, process)
         one.kill()
         done_before = len(records(path))
         output, errors = process.communicate(timeout=600)
@@ -122,7 +118,7 @@ def test_the_scheduler_is_lost(
     with worker(folder, "three"):
         wait_for_workers(address, 1)
         process = start(f"{QUICK} --seeds 200 --scheduler {address} --out out")
-        wait_for_records(path, 3, process)
+        wait_until(lambda: len(records(path)) >= 3, process)
         scheduler.kill()
         output, errors = process.communicate(timeout=300)
     assert (process.returncode, output) == (2, "")

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from sigmahat.compare.conditions import METHODS, REGRESSION, Case, Joint
-from sigmahat.compare.job import Row
+from sigmahat.compare.job import MOTOR, Row
 from sigmahat.files.tables import aligned, write_csv
 
 _SIDES = {"": "device", "_1": "side 1", "_2": "side 2"}
@@ -64,15 +64,14 @@ def table(rows: Sequence[Row]) -> str:
     cells = [["", *(f"{method} [%]" for method in METHODS), *found]]
     for row in rows:
         regression = row.performance[REGRESSION]
-        motor = (regression.D_theta, regression.B, regression.tau_coulomb)
         after = f", after {row.judged_from:g} s" if row.index.settled else ""
         cells.append(
             [
                 f"  {motion(row.joint)}, {case_and_part(row)}{after}",
                 *(f"{row.error(method):.3g}" for method in METHODS),
-                f"{regression.sigma_std:.2f}",
-                f"{regression.inside:.0f}",
-                *("-" if math.isnan(value) else f"{value:.4g}" for value in motor),
+                f"{regression['sigma_std']:.2f}",
+                f"{regression['inside']:.0f}",
+                *("-" if math.isnan(regression[n]) else f"{regression[n]:.4g}" for n in MOTOR),
             ]
         )
     return with_headings(aligned(cells), list(map(group, rows)))
@@ -118,5 +117,5 @@ def _words(row: Row) -> tuple[str, str, str]:
 
 def _figures(row: Row, method: str) -> dict[str, float]:
     """The numbers of a row for a method, by their names in JSON."""
-    found = {"msrep": row.error(method), **vars(row.performance[method])}
+    found = {**row.performance[method], "msrep": row.error(method)}
     return {name: found[name] for name in _IN_FILE}

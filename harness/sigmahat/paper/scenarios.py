@@ -59,19 +59,18 @@ def lever_arm(plant: Plant) -> float:
     return R_0 - _B * float(plant.start["initial.theta_c"])
 
 
-def _measured(*names: str) -> dict[str, str]:
-    """Connections of inputs to the measured outputs of a plant."""
-    return {name: f"{name}_measured" for name in names}
+_ONE_MOTOR, _TWO_MOTORS = (
+    {name: f"{name}_measured" for name in names}
+    for names in (("theta", "q", "tau"), ("theta", "q", "theta_c", "tau"))
+)
+_AWAS = {**_TWO_MOTORS, "tau_e_sensor": "tau_e_measured"}
+"""Outputs of a plant by the input of the estimator that they feed."""
 
 
-def estimator(start: Mapping[str, Value], sensor: str = "tau_e_measured") -> EstimatorFmu:
-    """The estimator of the AwAS, with the given start values, else the values of the FMU."""
-    return EstimatorFmu(
-        fmu="StiffnessEstimator",
-        start={"samplePeriod": T, **start},
-        connections={**_measured("theta", "q", "theta_c", "tau"), "tau_e_sensor": sensor},
-        record=OUTPUTS,
-    )
+def estimator(start: Mapping[str, Value], connections: Mapping[str, str] = _AWAS) -> EstimatorFmu:
+    """The estimator with the given start values, else the values of the FMU."""
+    start = {"samplePeriod": T, **start}
+    return EstimatorFmu("StiffnessEstimator", start, connections, record=OUTPUTS)
 
 
 def simulation(
@@ -81,7 +80,7 @@ def simulation(
     # The MODEL of the paper is fed with (28) at the actual deformation (its footnote 1), like a
     # sensor without noise. The modality Model of the FMU has only the measured positions.
     estimators = {
-        "MODEL": estimator({"modality": "Sensor", **start}, sensor="tau_e"),
+        "MODEL": estimator({"modality": "Sensor", **start}, {**_AWAS, "tau_e_sensor": "tau_e"}),
         "SENSOR": estimator({"modality": "Sensor", **start}),
         "RESIDUAL": estimator({"modality": "Residual", **start}),
         "MODEL-measured": estimator({"modality": "Model", **start}),
@@ -152,8 +151,11 @@ def single(k_3: float, frequency: float) -> Scenario:
     name = f"single-{spring}" + ("" if frequency == 0.5 else f"-{frequency:g}hz")
     # The regressors are powers of phi, about 0.01 rad; for the AwAS they go up to r^2 phi, about
     # 100 mm2 rad. So the paper's ridge 1/(c P_0) = 1 suits the AwAS, but is far too strong here.
-    start: dict[str, Value] = {"rls.m": 1}
-    estimators = {"RESIDUAL": {**start, "rls.P_0": 1e24}, "RESIDUAL-paper-prior": start}
+    start: dict[str, Value] = {"modality": "Residual", "rls.m": 1}
+    estimators = {
+        "RESIDUAL": estimator({**start, "rls.P_0": 1e24}, _ONE_MOTOR),
+        "RESIDUAL-paper-prior": estimator(start, _ONE_MOTOR),
+    }
     return Scenario(
         name=name,
         description=f"one flexible transmission, {spring} spring, {frequency:g} Hz for 15 s",
@@ -164,15 +166,7 @@ def single(k_3: float, frequency: float) -> Scenario:
             inputs={"tau": Sine(0.3, frequency)},
             record=[name for name in _AWAS_OUTPUTS if name not in ("theta_c_measured", "r")],
         ),
-        estimators={
-            modality: EstimatorFmu(
-                fmu="StiffnessEstimator",
-                start={"samplePeriod": T, "modality": "Residual", **values},
-                connections=_measured("theta", "q", "tau"),
-                record=OUTPUTS,
-            )
-            for modality, values in estimators.items()
-        },
+        estimators=estimators,
         comparisons=against_the_plant(estimators),
         figures=("transmission",),
     )

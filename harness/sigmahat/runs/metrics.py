@@ -120,9 +120,10 @@ def indices(
 def mean_interval(values: Sequence[float]) -> tuple[float, float]:
     """Mean over independent runs and half the width of its 95 % interval (Student t).
 
-    The half width of a single value is not defined: nan. For equal values, it is exactly 0.
+    The mean of no value and the half width of a single value are not defined: nan. For equal
+    values, the half width is exactly 0.
     """
-    mean = float(np.mean(values))
+    mean = float(np.mean(values)) if len(values) else math.nan
     if len(values) < 2:
         return mean, math.nan
     if len(set(values)) == 1:

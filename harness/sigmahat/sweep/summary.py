@@ -50,13 +50,9 @@ def means(sweep: SweepTable) -> list[Mean]:
         good = [row for row in rows if failures[row] is None]
         about = dict(zip(map(title, keys), key, strict=True))
         about |= {"runs": len(rows), "failed": len(rows) - len(good)}
-        found = {index: _mean([x[row] for row in good]) for index, x in indices.items()}
+        found = {index: mean_interval([x[row] for row in good]) for index, x in indices.items()}
         result.append((about, found))
     return result
-
-
-def _mean(values: list[float]) -> tuple[float, float]:
-    return mean_interval(values) if values else (math.nan, math.nan)
 
 
 def summary_columns(sweep: SweepTable) -> list[SummaryColumn]:

@@ -1,6 +1,7 @@
 """Figures 3 to 12 of the paper, a summary of the AwAS, and all figures by their names."""
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -8,19 +9,26 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from sigmahat.fmi.master import Recording
-from sigmahat.paper.figures import panels
-from sigmahat.paper.figures.panels import EVERYTHING, STIFFNESS, TORQUE, TRUE, line, window
+from sigmahat.paper.figures.panels import (
+    ESTIMATES,
+    THIN,
+    TRUE,
+    Array,
+    Panel,
+    errors,
+    last_part,
+    legend_above,
+    line,
+    lines,
+    over_deformation,
+    panel,
+    stiffness,
+    window,
+)
 from sigmahat.plotting.style import BLUE, GREEN, SKY, VERMILION, math_axis
-from sigmahat.runs.scenario import nominal_awas
+from sigmahat.runs.scenario import signal_of
 
-_HELD: dict[str, Any] = {"color": SKY, "drawstyle": "steps-post"}
 _NOMINAL: dict[str, Any] = {"color": "black", "linewidth": 0.8, "label": "nominal"}
-_LAST = 1 / 3  # fraction of a run that is shown against the deformation: an estimate changes little
-_DOTS: dict[str, Any] = {"linestyle": "", "marker": ".", "markersize": 3}
-_COUNT = 80  # number of dots, small enough that the truth is visible between the dots
-
-Panel = Callable[[Axes, Recording], object]
-Lines = Callable[[Axes, Recording, slice], object]  # draws some of the samples
 
 
 def _stacked(*every: Panel) -> Callable[[Recording], Figure]:
@@ -29,32 +37,11 @@ def _stacked(*every: Panel) -> Callable[[Recording], Figure]:
     def draw(recording: Recording) -> Figure:
         figure = Figure(figsize=(7.2, 1.2 + 2.5 * len(every)), layout="constrained")
         own = figure.subplots(len(every), squeeze=False)[:, 0]
-        for axes, panel in zip(own, every, strict=True):
-            axes.set_xlabel(math_axis("t"))
-            panel(axes, recording)
+        for axes, draw_panel in zip(own, every, strict=True):
+            draw_panel(axes, recording)
         return figure
 
     return draw
-
-
-def _whole(lines: Lines, columns: int = 1) -> Panel:
-    """A panel with all samples, and a legend of so many columns."""
-
-    def panel(axes: Axes, recording: Recording) -> None:
-        lines(axes, recording, EVERYTHING)
-        axes.legend(ncols=columns)
-
-    return panel
-
-
-def _part(lines: Lines, title: str, part: Callable[[Recording], slice]) -> Panel:
-    """A panel with a part of the samples, which has the title."""
-
-    def panel(axes: Axes, recording: Recording) -> None:
-        lines(axes, recording, part(recording))
-        axes.set_title(title, fontsize=9)
-
-    return panel
 
 
 def _reversal(signal: str, half_width: float) -> Callable[[Recording], slice]:
@@ -70,114 +57,80 @@ def _reversal(signal: str, half_width: float) -> Callable[[Recording], slice]:
     return part
 
 
-def deformation(axes: Axes, recording: Recording) -> None:
-    """Figures 3 and 9: deformation phi."""
-    line(axes, recording.t, recording.plant["phi"], color=BLUE, label=r"deformation $\phi$")
-    axes.set_ylabel(r"deformation $\phi$ [rad]")
-    panels.legend_above(axes)
-
-
-def velocity(axes: Axes, recording: Recording, shown: slice) -> None:
-    """Figure 4: motor velocity, true, differenced, and from the modified Kalman filter."""
-    t, plant = recording.t, recording.plant
-    differenced = np.diff(plant["theta_measured"], prepend=0.0) / (t[1] - t[0])
-    differenced[0] = 0.0
-    filtered = recording.estimators["RESIDUAL"]["theta_dot"]
-    for values, style in (
-        (plant["theta_dot"], TRUE),
-        (differenced, {"label": r"differenced, $\Delta\theta/T$", **_HELD}),
-        (filtered, {"color": VERMILION, "label": "modified kinematic Kalman filter"}),
-    ):
-        line(axes, t[shown], values[shown], **style)
-    axes.set_ylabel(r"motor velocity $\dot\theta$ [rad/s]")
-
-
-def flexibility_torque(axes: Axes, recording: Recording, shown: slice) -> None:
-    """Figure 5: flexibility torque, true, from the residual, from the sensor, and as fitted."""
-    plant, estimate = recording.plant, recording.estimators["RESIDUAL"]
-    for values, style in (
-        (estimate["tau_e_residual"], {"color": SKY, "label": r"residual $\gamma r_e$"}),
-        (plant["tau_e_measured"], {"color": GREEN, "label": "sensor"}),
-        (plant["tau_e"], TRUE),
-        (estimate["tau_e"], {"color": VERMILION, "label": r"fitted, $f(\theta_c, \phi)$"}),
-    ):
-        line(axes, recording.t[shown], values[shown], **style)
-    axes.set_ylabel(TORQUE)
-
-
-def stability_factor(axes: Axes, recording: Recording) -> None:
-    """Figure 7: stability factor a(k) of the RESIDUAL estimate."""
-    line(axes, recording.t, recording.estimators["RESIDUAL"]["a"], color=BLUE, label="RESIDUAL")
-    axes.set(yscale="log", ylabel="stability factor $a(k)$ [1]")
-    axes.legend()
-
-
-def constant_factors(axes: Axes, recording: Recording) -> None:
-    """Figure 8: stiffness with constant stability factors, and with the enhanced factor."""
-    t, true = recording.t, recording.plant["sigma"]
-    constant = {
-        float(series.parameters["rls.a"]): series["sigma"]
-        for series in recording.estimators.values()
-        if series.parameters["rls.kind"] == "ConstantFactor"
-    }
-    small, large = sorted(constant)
-    line(axes, t, true, **TRUE)
-    for a, color, what in ((small, GREEN, "small"), (large, VERMILION, "large")):
-        line(axes, t, constant[a], color=color, label=f"constant, too {what}: $a$ = {a:g}")
-    enhanced = recording.estimators["RESIDUAL"]["sigma"]
-    line(axes, t, enhanced, color=BLUE, label="enhanced: $a(k)$")
-    panels.limit(axes, true)
-    axes.set_ylabel(STIFFNESS)
-    axes.legend(ncols=2)
-
-
-def lever_arm(axes: Axes, recording: Recording) -> None:
-    """Figure 10: lever arm r, true and by the nominal data."""
-    line(axes, recording.t, recording.plant["r"], **TRUE)
-    line(axes, recording.t, nominal_awas(recording)["r"], **_NOMINAL)
-    axes.set_ylabel("lever arm $r$ [m]")
-    axes.legend()
-
-
-def nominal_torque(axes: Axes, recording: Recording, shown: slice = EVERYTHING) -> None:
-    """Figure 11: flexibility torque, by the nominal data and from the sensor."""
-    for values, style in (
-        (recording.plant["tau_e_measured"], {"color": GREEN, "label": "sensor"}),
-        (recording.plant["tau_e"], {**TRUE, "linewidth": 1.5}),
-        (nominal_awas(recording)["tau_e"], _NOMINAL),
-    ):
-        line(axes, recording.t[shown], values[shown], **style)
-    axes.set_ylabel(TORQUE)
+def _differenced(recording: Recording) -> Array:
+    """Velocity by differences of the measured position [rad/s]."""
+    t = recording.t
+    velocity: Array = np.diff(recording.plant["theta_measured"], prepend=0.0) / (t[1] - t[0])
+    velocity[0] = 0.0
+    return velocity
 
 
 def _most_wrong(recording: Recording) -> slice:
     """Samples where the nominal torque is most wrong."""
-    error = np.abs(nominal_awas(recording)["tau_e"] - recording.plant["tau_e"])
+    error = np.abs(signal_of(recording, "nominal.tau_e") - recording.plant["tau_e"])
     return window(recording.t, float(recording.t[np.argmax(error)]), 0.5)
 
 
-_MOST_WRONG = _part(nominal_torque, "where the nominal torque is most wrong", _most_wrong)
-
-
-def _legend_above(panel: Panel) -> Panel:
-    def with_legend(axes: Axes, recording: Recording) -> None:
-        panel(axes, recording)
-        panels.legend_above(axes)
-
-    return with_legend
-
-
-def nominal_stiffness(axes: Axes, recording: Recording, shown: slice) -> None:
-    """Figure 12: stiffness, true, by the nominal data, and estimated in the three modalities."""
-    line(axes, recording.t[shown], nominal_awas(recording)["sigma"][shown], **_NOMINAL)
-    panels.stiffness_lines(axes, recording, shown)
+_DEFORMATION = panel(
+    lines(r"deformation $\phi$ [rad]", line("plant.phi", r"deformation $\phi$", BLUE)),
+    legend=legend_above,
+)
+_VELOCITY = lines(
+    r"motor velocity $\dot\theta$ [rad/s]",
+    ("plant.theta_dot", TRUE),
+    line(_differenced, r"differenced, $\Delta\theta/T$", SKY, drawstyle="steps-post"),
+    line("RESIDUAL.theta_dot", "modified kinematic Kalman filter", VERMILION),
+)
+_FLEXIBILITY_TORQUE = lines(
+    math_axis("tau_e"),
+    line("RESIDUAL.tau_e_residual", r"residual $\gamma r_e$", SKY),
+    line("plant.tau_e_measured", "sensor", GREEN),
+    ("plant.tau_e", TRUE),
+    line("RESIDUAL.tau_e", r"fitted, $f(\theta_c, \phi)$", VERMILION),
+)
+_STABILITY_FACTOR = lines(
+    "stability factor $a(k)$ [1]", line("RESIDUAL.a", "RESIDUAL", BLUE), scale="log"
+)
+_CONSTANT_FACTORS = lines(
+    math_axis("sigma"),
+    ("plant.sigma", TRUE),
+    *(
+        line(f"RESIDUAL, a = {a}.sigma", f"constant, too {what}: $a$ = {a}", color)
+        for a, color, what in (("0.0001", GREEN, "small"), ("0.01", VERMILION, "large"))
+    ),
+    line("RESIDUAL.sigma", "enhanced: $a(k)$", BLUE),
+    within="plant.sigma",
+)
+_LEVER_ARM = panel(
+    lines("lever arm $r$ [m]", ("plant.r", TRUE), ("nominal.r", _NOMINAL)), legend=Axes.legend
+)
+_NOMINAL_TORQUE = lines(
+    math_axis("tau_e"),
+    line("plant.tau_e_measured", "sensor", GREEN),
+    ("plant.tau_e", {**TRUE, "linewidth": 1.5}),
+    ("nominal.tau_e", _NOMINAL),
+)
+_MOST_WRONG = partial(panel, _NOMINAL_TORQUE, _most_wrong, "where the nominal torque is most wrong")
+_NOMINAL_STIFFNESS = stiffness(("nominal.sigma", _NOMINAL))
+_TORQUES = lines(
+    math_axis("tau_e"),
+    line("plant.tau_e_1", "side 1", GREEN),
+    line("plant.tau_e_2", "side 2", VERMILION),
+    line(
+        lambda each: each.plant["tau_e_1"] + each.plant["tau_e_2"],
+        "sum, which moves the link",
+        "black",
+        linewidth=0.8,
+    ),
+)
+_two_columns, _five_columns = (partial(Axes.legend, ncols=count) for count in (2, 5))
 
 
 def _largest_stiffness(axes: Axes, recording: Recording) -> None:
     """The part of figure 12 with the largest stiffness."""
     t, true = recording.t, recording.plant["sigma"]
     shown = window(t, float(t[np.argmax(np.where(t > 1.0, true, 0.0))]), 2.0)
-    nominal_stiffness(axes, recording, shown)
+    _NOMINAL_STIFFNESS(axes, recording, shown)
     axes.set_title("where the stiffness is largest", fontsize=9)
     axes.set_ylim(0.95 * true[shown].min(), 1.2 * true[shown].max())
 
@@ -186,16 +139,15 @@ def transmission(recording: Recording) -> Figure:
     """One flexible transmission: stiffness over time, the curves, and the relative errors."""
     figure = Figure(figsize=(7.2, 8.7), layout="constrained")
     axes = figure.subplot_mosaic([["time", "time"], ["torque", "stiffness"], ["errors", "errors"]])
-    panels.stiffness_lines(axes["time"], recording, EVERYTHING, thin=True)
-    axes["time"].legend(ncols=3)
-    styles = {name: str(style["color"]) for name, style in panels.estimator_styles(recording)}
-    for panel, output in (("torque", "tau_e"), ("stiffness", "sigma")):
-        over_deformation(axes[panel], recording, output, "", styles)
-        axes[panel].set_title(_last_part(recording), fontsize=9)
+    of_time = partial(Axes.legend, ncols=3)
+    panel(stiffness(true=THIN), legend=of_time)(axes["time"], recording)
+    colors = {style["label"]: style["color"] for _, style in ESTIMATES}
+    drawn = {name: color for name, color in colors.items() if name in recording.estimators}
+    for place, output in (("torque", "tau_e"), ("stiffness", "sigma")):
+        over_deformation(axes[place], recording, output, "", drawn)
+        axes[place].set_title(last_part(recording), fontsize=9)
     axes["stiffness"].legend()
-    panels.error_lines(axes["errors"], recording)
-    for name in ("time", "errors"):
-        axes[name].set_xlabel(math_axis("t"))
+    errors(*ESTIMATES)(axes["errors"], recording)
     return figure
 
 
@@ -212,91 +164,60 @@ def antagonistic(recording: Recording) -> Figure:
             ["errors", "errors"],
         ]
     )
-    _torques(axes["torques"], recording)
-    t, plant, estimate = recording.t, recording.plant, recording.estimators["RESIDUAL"]
-    for name, signal, color in (
-        ("device", "sigma", BLUE),
-        ("side 1", "sigma_1", GREEN),
-        ("side 2", "sigma_2", VERMILION),
-    ):
-        line(axes[signal], t, plant[signal], **TRUE)
-        line(axes[signal], t, estimate[signal], color=color, label=f"RESIDUAL, {name}")
-        panels.limit(axes[signal], plant[signal])
-        axes[signal].set_ylabel(STIFFNESS)
-        axes[signal].legend(loc="upper right")
-        style = {"color": color, "label": name}
-        panels.error_line(axes["errors"], t, plant[signal], estimate[signal], **style)
+    panel(_TORQUES, legend=legend_above)(axes["torques"], recording)
+    parts = (
+        ("sigma", BLUE, "device"),
+        ("sigma_1", GREEN, "side 1"),
+        ("sigma_2", VERMILION, "side 2"),
+    )
+    for signal, color, name in parts:
+        estimate = line(f"RESIDUAL.{signal}", f"RESIDUAL, {name}", color)
+        true = f"plant.{signal}"
+        drawn = lines(math_axis("sigma"), (true, TRUE), estimate, within=true)
+        panel(drawn, legend=partial(Axes.legend, loc="upper right"))(axes[signal], recording)
     for side, color in (("_1", GREEN), ("_2", VERMILION)):
         over_deformation(axes[f"curve{side}"], recording, "tau_e", side, {"RESIDUAL": color})
         over_deformation(axes[f"stiffness{side}"], recording, "sigma", side, {"RESIDUAL": color})
-        axes[f"curve{side}"].set_title(f"side {side[1]}, {_last_part(recording)}", fontsize=9)
+        axes[f"curve{side}"].set_title(f"side {side[1]}, {last_part(recording)}", fontsize=9)
         axes[f"curve{side}"].legend(loc="upper left")
-    panels.error_axes(axes["errors"])
-    for name in ("torques", "sigma", "sigma_1", "sigma_2", "errors"):
-        axes[name].set_xlabel(math_axis("t"))
+    of_parts = (line(f"RESIDUAL.{signal}", name, color) for signal, color, name in parts)
+    errors(*of_parts)(axes["errors"], recording)
     return figure
 
 
-def _torques(axes: Axes, recording: Recording) -> None:
-    t, plant = recording.t, recording.plant
-    for i, color in ((1, GREEN), (2, VERMILION)):
-        line(axes, t, plant[f"tau_e_{i}"], color=color, label=f"side {i}")
-    total = plant["tau_e_1"] + plant["tau_e_2"]
-    line(axes, t, total, color="black", linewidth=0.8, label="sum, which moves the link")
-    axes.set_ylabel(TORQUE)
-    panels.legend_above(axes)
-
-
-def over_deformation(
-    axes: Axes, recording: Recording, output: str, side: str, colors: dict[str, str]
-) -> None:
-    """An output, tau_e or sigma, against deformation: true, and of estimators by their colour."""
-    last = recording.t >= (1 - _LAST) * recording.t[-1]
-    phi, true = recording.plant[f"phi{side}"][last], recording.plant[f"{output}{side}"][last]
-    order = np.argsort(phi)
-    axes.plot(phi[order], true[order], **TRUE)
-    for name, color in colors.items():
-        estimate = recording.estimators[name]
-        x, y = estimate[f"phi{side}"][last], estimate[f"{output}{side}"][last]
-        few = np.argsort(x)[:: max(1, len(x) // _COUNT)]
-        axes.plot(x[few], y[few], color=color, label=name, **_DOTS)
-    axes.set(xlabel=math_axis("phi"), ylabel=math_axis(output))
-    axes.locator_params(axis="x", nbins=5)
-
-
-def _last_part(recording: Recording) -> str:
-    return f"last {_LAST * recording.t[-1]:g} s"
-
-
 FIGURES: dict[str, Callable[[Recording], Figure]] = {
-    "fig3-deformation": _stacked(deformation),
+    "fig3-deformation": _stacked(_DEFORMATION),
     "fig4-velocity": _stacked(
-        _whole(velocity),
+        panel(_VELOCITY, legend=Axes.legend),
         # Where the quantisation is largest compared with the velocity.
-        _part(velocity, "at a reversal", _reversal("theta_dot", 0.05)),
+        panel(_VELOCITY, _reversal("theta_dot", 0.05), "at a reversal"),
     ),
     "fig5-flexibility-torque": _stacked(
-        _whole(flexibility_torque, 2),
-        _part(flexibility_torque, "where the torque changes sign", _reversal("tau_e", 0.25)),
+        panel(_FLEXIBILITY_TORQUE, legend=_two_columns),
+        panel(_FLEXIBILITY_TORQUE, _reversal("tau_e", 0.25), "where the torque changes sign"),
     ),
     "fig6-stiffness": _stacked(
-        _whole(panels.stiffness_lines, 2),
-        _part(panels.stiffness_lines, "start-up", lambda each: window(each.t, 0.0, 0.3)),
+        panel(stiffness(), legend=_two_columns),
+        panel(stiffness(), lambda each: window(each.t, 0.0, 0.3), "start-up"),
     ),
-    "fig7-stability-factor": _stacked(stability_factor),
-    "fig8-constant-factors": _stacked(constant_factors),
-    "fig9-deformation": _stacked(deformation),
-    "fig10-lever-arm": _stacked(lever_arm),
-    "fig11-flexibility-torque": _stacked(_legend_above(nominal_torque), _MOST_WRONG),
-    "fig12-stiffness": _stacked(_whole(nominal_stiffness, 5), _largest_stiffness),
+    "fig7-stability-factor": _stacked(panel(_STABILITY_FACTOR, legend=Axes.legend)),
+    "fig8-constant-factors": _stacked(panel(_CONSTANT_FACTORS, legend=_two_columns)),
+    "fig9-deformation": _stacked(_DEFORMATION),
+    "fig10-lever-arm": _stacked(_LEVER_ARM),
+    "fig11-flexibility-torque": _stacked(
+        panel(_NOMINAL_TORQUE, legend=legend_above), _MOST_WRONG()
+    ),
+    "fig12-stiffness": _stacked(
+        panel(_NOMINAL_STIFFNESS, legend=_five_columns), _largest_stiffness
+    ),
     "transmission": transmission,
-    "summary": _stacked(_whole(panels.stiffness_lines, 2), panels.error_lines),
+    "summary": _stacked(panel(stiffness(), legend=_two_columns), errors(*ESTIMATES)),
     "experiment": _stacked(
-        deformation,
-        lever_arm,
-        _legend_above(_MOST_WRONG),
-        _whole(nominal_stiffness, 5),
-        panels.error_lines,
+        _DEFORMATION,
+        _LEVER_ARM,
+        _MOST_WRONG(legend=legend_above),
+        panel(_NOMINAL_STIFFNESS, legend=_five_columns),
+        errors(*ESTIMATES),
     ),
     "antagonistic": antagonistic,
 }

@@ -1,6 +1,6 @@
-"""Panels over time, and drawing functions that several panels need."""
+"""Panels as data: signals over time, an output over the deformation, relative errors."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 import numpy as np
@@ -9,80 +9,114 @@ from numpy.typing import NDArray
 
 from sigmahat.fmi.master import Recording
 from sigmahat.plotting.style import BLUE, GREEN, VERMILION, math_axis
+from sigmahat.runs.scenario import NOMINAL, PLANT, signal_of, source_and_variable
 
 Array = NDArray[np.float64]
+Signal = str | Callable[[Recording], Array]  # a signal of a comparison, or a function that has it
+Line = tuple[Signal, dict[str, Any]]  # signal and style
+Lines = Callable[[Axes, Recording, slice], object]  # draws some of the samples
+Panel = Callable[[Axes, Recording], object]
+
+
+def line(signal: Signal, label: str, color: str, **style: Any) -> Line:
+    return signal, {"label": label, "color": color, **style}
+
 
 # Wide and light, so that an estimate on top of the truth still shows it.
 TRUE: dict[str, Any] = {"color": "#aaaaaa", "linewidth": 3.0, "label": "true"}
-EVERYTHING = slice(None)
-STIFFNESS = math_axis("sigma")
-TORQUE = math_axis("tau_e")
+THIN: dict[str, Any] = {**TRUE, "color": "#888888", "linewidth": 1.2}
+"""For a true stiffness that oscillates so fast that a wide line would fill an area."""
+ESTIMATES: tuple[Line, ...] = tuple(
+    (f"{name}.sigma", {"color": color, "linestyle": linestyle, "label": name})
+    for name, color, linestyle in (
+        ("RESIDUAL", BLUE, "-"),
+        ("SENSOR", GREEN, (0, (5, 2))),
+        ("MODEL", VERMILION, (0, (1, 1.5))),
+        ("RESIDUAL-paper-prior", VERMILION, (0, (5, 2))),
+    )
+)
+"""The stiffness of every estimator that has a style."""
 
-_THIN: dict[str, Any] = {"color": "#888888", "linewidth": 1.2}
-
-_ESTIMATORS: dict[str, dict[str, Any]] = {
-    "RESIDUAL": {"color": BLUE},
-    "SENSOR": {"color": GREEN, "linestyle": (0, (5, 2))},
-    "MODEL": {"color": VERMILION, "linestyle": (0, (1, 1.5))},
-    "RESIDUAL-paper-prior": {"color": VERMILION, "linestyle": (0, (5, 2))},
-}
 _ERROR_WINDOW = 0.1  # [s]
+_LAST = 1 / 3  # fraction of a run that is shown against the deformation: an estimate changes little
+_COUNT = 80  # number of dots, small enough that the truth is visible between the dots
 
 
-def line(axes: Axes, t: Array, values: Array, **style: Any) -> None:
-    """A signal over time."""
-    axes.plot(t, values, **style)
-    axes.margins(x=0.01)
+def lines(label: str, *drawn: Line, within: str = "", scale: str = "linear") -> Lines:
+    """Signals over time; estimators that a recording does not have are left out.
 
-
-def stiffness_lines(axes: Axes, recording: Recording, window: slice, thin: bool = False) -> None:
-    """True stiffness, and the estimate of each modality.
-
-    thin  for a true stiffness that oscillates so fast that a wide line would fill an area
+    within  signal whose range limits the axis, however far an estimate goes
     """
-    t, true = recording.t[window], recording.plant["sigma"][window]
-    line(axes, t, true, **({**TRUE, **_THIN} if thin else TRUE))
-    for name, style in estimator_styles(recording):
-        line(axes, t, recording.estimators[name]["sigma"][window], **style)
-    limit(axes, true)
-    axes.set_ylabel(STIFFNESS)
+
+    def draw(axes: Axes, recording: Recording, shown: slice) -> None:
+        for values, style in _recorded(drawn, recording):
+            axes.plot(recording.t[shown], values[shown], **style)
+        if within:
+            true = signal_of(recording, within)[shown]
+            top = float(np.max(true))
+            axes.set_ylim(min(0.0, float(np.min(true))) - 0.1 * top, 1.4 * top)
+        axes.margins(x=0.01)
+        axes.set(xlabel=math_axis("t"), ylabel=label, yscale=scale)
+
+    return draw
 
 
-def error_lines(axes: Axes, recording: Recording) -> None:
-    """Relative error of the stiffness of each modality."""
-    for name, style in estimator_styles(recording):
-        estimate = recording.estimators[name]["sigma"]
-        error_line(axes, recording.t, recording.plant["sigma"], estimate, **style)
-    error_axes(axes)
+def stiffness(*before: Line, true: dict[str, Any] = TRUE) -> Lines:
+    """True stiffness and the estimate of each modality, on top of other lines."""
+    drawn = (*before, ("plant.sigma", true), *ESTIMATES)
+    return lines(math_axis("sigma"), *drawn, within="plant.sigma")
 
 
-def estimator_styles(recording: Recording) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Estimators of the recording that have a style, and their style with a label."""
-    for name, style in _ESTIMATORS.items():
-        if name in recording.estimators:
-            yield name, {**style, "label": name}
+def errors(*drawn: Line) -> Panel:
+    """Relative error of each stiffness, the largest error of each window."""
+
+    def draw(axes: Axes, recording: Recording) -> None:
+        window = int(np.searchsorted(recording.t, _ERROR_WINDOW))
+        windows = len(recording.t) // window
+        for error, style in _recorded(drawn, recording, _relative_error):
+            worst = error[: windows * window].reshape(windows, window).max(axis=1)
+            axes.plot(recording.t[: windows * window : window], worst, **style)
+        axes.margins(x=0.01)
+        label = f"relative error [%],\nlargest within {_ERROR_WINDOW:g} s"
+        axes.set(xlabel=math_axis("t"), ylabel=label, yscale="log")
+        axes.legend(ncols=3)
+
+    return draw
 
 
-def error_line(axes: Axes, t: Array, true: Array, estimate: Array, **style: Any) -> None:
-    """Relative error of a stiffness, the largest error of each window."""
-    window = int(np.searchsorted(t, _ERROR_WINDOW))
-    windows = len(t) // window
-    error = np.abs(estimate / true - 1)[: windows * window] * 100
-    worst = error.reshape(windows, window).max(axis=1)
-    line(axes, t[: windows * window : window], worst, **style)
+def _relative_error(recording: Recording, signal: str) -> Array:
+    true = recording.plant[source_and_variable(signal)[1]]
+    error: Array = np.abs(signal_of(recording, signal) / true - 1) * 100
+    return error
 
 
-def error_axes(axes: Axes) -> None:
-    """Scale, label and legend of a panel with error lines."""
-    axes.set_yscale("log")
-    axes.set_ylabel(f"relative error [%],\nlargest within {_ERROR_WINDOW:g} s")
-    axes.legend(ncols=3)
+def _recorded(
+    drawn: Iterable[Line],
+    recording: Recording,
+    read: Callable[[Recording, str], Array] = signal_of,
+) -> Iterator[tuple[Array, dict[str, Any]]]:
+    for signal, style in drawn:
+        if not isinstance(signal, str):
+            yield signal(recording), style
+        elif source_and_variable(signal)[0] in (PLANT, NOMINAL, *recording.estimators):
+            yield read(recording, signal), style
 
 
-def limit(axes: Axes, true: Array) -> None:
-    """Limits the axis to the range of the true values, however far an estimate goes."""
-    top = float(np.max(true))
-    axes.set_ylim(min(0.0, float(np.min(true))) - 0.1 * top, 1.4 * top)
+def panel(
+    drawn: Lines,
+    part: Callable[[Recording], slice] = lambda recording: slice(None),
+    title: str = "",
+    legend: Callable[[Axes], object] = lambda axes: None,
+) -> Panel:
+    """Lines over the whole run, or over a part of it."""
+
+    def draw(axes: Axes, recording: Recording) -> None:
+        drawn(axes, recording, part(recording))
+        if title:
+            axes.set_title(title, fontsize=9)
+        legend(axes)
+
+    return draw
 
 
 def legend_above(axes: Axes) -> None:
@@ -96,3 +130,24 @@ def window(t: Array, centre: float, half_width: float) -> slice:
     """Samples within half_width [s] of centre [s]."""
     first, last = np.searchsorted(t, (centre - half_width, centre + half_width))
     return slice(int(first), int(last) + 1)
+
+
+def over_deformation(
+    axes: Axes, recording: Recording, output: str, side: str, colors: dict[str, str]
+) -> None:
+    """An output, tau_e or sigma, against deformation: true, and of estimators by their colour."""
+    last = recording.t >= (1 - _LAST) * recording.t[-1]
+    phi, true = recording.plant[f"phi{side}"][last], recording.plant[f"{output}{side}"][last]
+    order = np.argsort(phi)
+    axes.plot(phi[order], true[order], **TRUE)
+    for name, color in colors.items():
+        estimate = recording.estimators[name]
+        x, y = estimate[f"phi{side}"][last], estimate[f"{output}{side}"][last]
+        few = np.argsort(x)[:: max(1, len(x) // _COUNT)]
+        axes.plot(x[few], y[few], linestyle="", marker=".", markersize=3, color=color, label=name)
+    axes.set(xlabel=math_axis("phi"), ylabel=math_axis(output))
+    axes.locator_params(axis="x", nbins=5)
+
+
+def last_part(recording: Recording) -> str:
+    return f"last {_LAST * recording.t[-1]:g} s"
