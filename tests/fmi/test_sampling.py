@@ -132,14 +132,6 @@ def test_an_input_derivative_is_used_for_one_step_only(name: str) -> None:
         assert results[0] == results[1], changed
 
 
-def test_a_step_of_too_many_ticks_is_refused() -> None:
-    with FMI2().initialise(COUNTING) as fmu:
-        assert fmu.step(0.0, 1e9) == ERROR
-        assert "step of 1e+09 s is more than 1e+09 times samplePeriod" in fmu.last_message
-        assert fmu.step(0.0, 1e-3) == OK  # the instance can continue
-        assert ticks(fmu) == 1
-
-
 def test_parameters_that_contradict_each_other_stop_the_step_until_they_are_corrected(
     fmi: Fmi,
 ) -> None:

@@ -1,13 +1,10 @@
 """AwAS and antagonistic device, against the paper's equations solved by scipy, and physics."""
 
 import math
-from collections.abc import Iterator
 
 import numpy as np
 import pytest
 
-from fmi_instance import ERROR, OK, Instance
-from fmi_runs import FMI2
 from plant_runs import QUIET, STATES, relative_error, run_awas, run_plant, sinusoids, times
 from reference_joints import (
     SCREW,
@@ -82,49 +79,6 @@ def test_encoders_round_to_the_nearest_count(counts: float) -> None:
         expected = round_to_counts(run[name], counts)
         np.testing.assert_allclose(run[f"{name}_measured"], expected, rtol=1e-14, err_msg=name)
         assert len(np.unique(expected)) > 1
-
-
-@pytest.fixture
-def moving() -> Iterator[Instance]:
-    """A plant after a step under torque."""
-    with FMI2("AwasPlant").initialise() as plant:
-        plant.set_all({"tau": 0.3, "tau_c": 1.0})
-        assert plant.step(0.0, 1e-3) == OK
-        yield plant
-
-
-OUTPUTS = [*STATES, "tau_e", "theta_measured", "tau_measured", "tau_e_measured"]
-
-
-@pytest.mark.parametrize(
-    ("name", "value", "slope", "message"),
-    [
-        ("tau", math.nan, 0.0, "finite input tau, received nan"),
-        ("tau_c", math.inf, 0.0, "finite input tau_c, received inf"),
-        ("tau_ext", -math.inf, 0.0, "finite input tau_ext, received -inf"),
-        ("tau", 1.7e308, 1.7e308, "finite input tau, received 1.7e+308 at its begin and inf"),
-        ("tau_ext", 1e300, 0.0, "no solution"),
-        ("tau_ext", 0.0, 1e26, "no solution"),  # has one at first
-    ],
-)
-def test_a_step_with_a_bad_input_is_refused_and_leaves_the_plant_as_it_was(
-    moving: Instance, name: str, value: float, slope: float, message: str
-) -> None:
-    before = moving.get_all(OUTPUTS)
-    good = moving.get(name)
-    moving.set(name, value)
-    assert moving.set_derivative(name, slope) == OK
-    assert moving.step(1e-3, 1.0) == ERROR
-    assert message in moving.messages[-1][2]
-    assert moving.get_all(OUTPUTS) == before
-
-    moving.set(name, good)
-    assert moving.set_derivative(name, 0.0) == OK
-    assert moving.step(1e-3, 1e-3) == OK
-    with FMI2("AwasPlant").initialise() as other:
-        other.set_all({"tau": 0.3, "tau_c": 1.0})
-        assert other.step(0.0, 1e-3) == other.step(1e-3, 1e-3) == OK
-        assert moving.get_all(OUTPUTS) == other.get_all(OUTPUTS)
 
 
 # The antagonistic device
