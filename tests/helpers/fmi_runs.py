@@ -3,7 +3,7 @@
 import ctypes
 import math
 import random
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -46,6 +46,20 @@ def names(fmu: Any, causality: str, variability: str | None = None) -> list[str]
         for name, variable in fmu.variables.items()
         if variable.causality == causality and variability in (None, variable.variability)
     ]
+
+
+def limits(variable: Any) -> Iterator[tuple[str, float, float]]:
+    """Of a parameter: which limit, the limit, and the next value outside."""
+    lowest, highest = variable.min, variable.max
+    if variable.type == "Enumeration":
+        values = [item.value for item in variable.declaredType.items]
+        lowest, highest = values[0], values[-1]
+    for which, limit, outward in (("min", lowest, -math.inf), ("max", highest, math.inf)):
+        if variable.type in ("Real", "Float64"):
+            real = float(outward if limit is None else limit)
+            yield which, real, math.nextafter(real, outward)
+        elif limit is not None:
+            yield which, int(limit), int(limit) + int(math.copysign(1, outward))
 
 
 def random_steps(count: int, seed: int) -> list[tuple[float, float]]:
