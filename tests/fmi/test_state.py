@@ -44,34 +44,23 @@ def test_both_versions_give_the_same_bits(name: str, start: dict[str, float], fm
 @each_kind
 def test_an_instance_after_a_reset_is_like_a_new_one(name: str, fmi: Fmi) -> None:
     with fmi(name) as fmu:
-        driver = Driver(fmu)
-        fmu.initialise()
-        initial, fresh = driver.result(), driver.run(STEPS)
-    with fmi(name) as fmu:
-        driver = Driver(fmu)
+        driver, new = Driver(fmu), fmu.saved()
         tunable = names(fmu, "parameter", "tunable")[:3]
         other = {n: 1.5 * float(fmu.variables[n].start) for n in tunable}
-        for point in POINTS[:6]:
+        fmu.initialise()
+        fresh = driver.run(STEPS)
+        for point in POINTS[:3]:
+            assert fmu.call("Reset") == OK
+            assert fmu.saved() == new
             fmu.initialise(other, start=3.7)  # values that the reset has to replace
             driver.run([(3.7 + t, h) for t, h in STEPS[:point]])
-            assert fmu.call("Reset") == OK
-            fmu.initialise()
-            assert driver.result() == initial
-            assert driver.run(STEPS) == fresh
-            assert fmu.call("Reset") == OK
-
-
-def test_after_a_reset_without_setup_the_start_time_is_0() -> None:
-    with FMI2() as fmu:
-        driver = Driver(fmu)
-        fmu.initialise()
-        fresh = driver.run(STEPS[:20])
         assert fmu.call("Reset") == OK
-        fmu.initialise(start=3.7)
-        assert fmu.step(3.7, 1e-3) == OK
-        assert fmu.call("Reset") == OK
-        assert fmu.call("EnterInitializationMode") == OK and fmu.exit() == OK
-        assert driver.run(STEPS[:20]) == fresh
+        if fmu.prefix == "fmi2":  # an importer may leave out the times: the start is 0
+            assert fmu.call("EnterInitializationMode") == OK
+        else:
+            assert fmu.enter() == OK
+        assert fmu.exit() == OK
+        assert driver.run(STEPS) == fresh
 
 
 @each_kind
