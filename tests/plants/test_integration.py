@@ -28,7 +28,7 @@ def test_table1_is_the_solution_of_the_equations() -> None:
     # A sinusoid interpolated linearly is smaller by (w h)^2 / 12, but for a ripple of mean zero.
     share = 1 - (0.2 * math.pi * h) ** 2 / 12
     states = solution(
-        awas({}), lambda t: (share * paper_tau(t), share * paper_tau_c(t), 0.0), AT_REST, 15.0
+        awas, lambda t: (share * paper_tau(t), share * paper_tau_c(t), 0.0), AT_REST, 15.0
     )
     t = times(h, 15.0)
     torques = sinusoids(t, (0.3, 0.1), (8.0, 0.1), (0.0, 0.0))
@@ -42,7 +42,7 @@ def test_held_torques_are_held() -> None:
     run = run_awas(h, torques, QUIET, [*STATES, "tau_measured"], held=True)
     reference = [AT_REST]
     for held in torques[:-1]:
-        piece = solve(awas({}), h, np.array([held, held]), reference[-1])
+        piece = solve(awas, h, np.array([held, held]), reference[-1])
         reference.append(piece[1])
     assert relative_error(run, np.array(reference)).max() < 1e-8
     np.testing.assert_array_equal(run["tau_measured"][1:], torques[:-1, 0])
