@@ -5,7 +5,7 @@ file(GLOB tests CONFIGURE_DEPENDS tests/c/test_*.py tests/fmi/test_*.py)
 list(FILTER tests EXCLUDE REGEX
      "controller|endurance|library_packages|model_description|mutation|sample_loop|stress")
 file(GLOB promises CONFIGURE_DEPENDS tests/proof/test_promises_of_*.py)
-list(APPEND tests ${promises} tests/plants/test_plants_of_the_paper.py tests/plants/test_every_plant.py)
+list(APPEND tests ${promises} tests/plants/test_integration.py tests/plants/test_every_plant.py)
 add_custom_target(
   coverage
   COMMAND ${run_tests} -q --dist loadscope -m "not slow" -k "not table1" ${tests}

@@ -85,20 +85,17 @@ fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean toleranceDefined, fm
     return (fmi2Status)sh_set_up(instance, &experiment, "fmi2SetupExperiment");
 }
 
-fmi2Status fmi2EnterInitializationMode(fmi2Component c)
-{
-    return (fmi2Status)sh_begin_initialization(c, "fmi2EnterInitializationMode");
-}
+/* A function whose arguments the shell takes as they are. */
+#define FORWARD(Name, parameters, call)                                                            \
+    fmi2Status fmi2##Name parameters                                                               \
+    {                                                                                              \
+        static const char function[] = "fmi2" #Name;                                               \
+        return (fmi2Status)(call);                                                                 \
+    }
 
-fmi2Status fmi2ExitInitializationMode(fmi2Component c)
-{
-    return (fmi2Status)sh_end_initialization(c, "fmi2ExitInitializationMode");
-}
-
-fmi2Status fmi2Terminate(fmi2Component c)
-{
-    return (fmi2Status)sh_terminate(c, "fmi2Terminate");
-}
+FORWARD(EnterInitializationMode, (fmi2Component c), sh_begin_initialization(c, function))
+FORWARD(ExitInitializationMode, (fmi2Component c), sh_end_initialization(c, function))
+FORWARD(Terminate, (fmi2Component c), sh_terminate(c, function))
 
 fmi2Status fmi2Reset(fmi2Component c)
 {
@@ -178,36 +175,17 @@ NO_STATUS(StringStatus, String)
 STATUS(Real, fmi2LastSuccessfulTime, instance->time)
 STATUS(Boolean, fmi2Terminated, fmi2False)
 
-fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *FMUstate)
-{
-    return (fmi2Status)sh_save_state(c, FMUstate, "fmi2GetFMUstate");
-}
-
-fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate FMUstate)
-{
-    return (fmi2Status)sh_restore_state(c, FMUstate, "fmi2SetFMUstate");
-}
-
-fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *FMUstate)
-{
-    return (fmi2Status)sh_free_state(c, FMUstate, "fmi2FreeFMUstate");
-}
-
-fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate FMUstate, size_t *size)
-{
-    return (fmi2Status)sh_state_size(c, FMUstate, size, "fmi2SerializedFMUstateSize");
-}
-
-fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate FMUstate, fmi2Byte serializedState[],
-                                 size_t size)
-{
-    return (fmi2Status)sh_serialize_state(c, FMUstate, serializedState, size,
-                                          "fmi2SerializeFMUstate");
-}
-
-fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte serializedState[], size_t size,
-                                   fmi2FMUstate *FMUstate)
-{
-    return (fmi2Status)sh_deserialize_state(c, serializedState, size, FMUstate,
-                                            "fmi2DeSerializeFMUstate");
-}
+FORWARD(GetFMUstate, (fmi2Component c, fmi2FMUstate *FMUstate),
+        sh_save_state(c, FMUstate, function))
+FORWARD(SetFMUstate, (fmi2Component c, fmi2FMUstate FMUstate),
+        sh_restore_state(c, FMUstate, function))
+FORWARD(FreeFMUstate, (fmi2Component c, fmi2FMUstate *FMUstate),
+        sh_free_state(c, FMUstate, function))
+FORWARD(SerializedFMUstateSize, (fmi2Component c, fmi2FMUstate FMUstate, size_t *size),
+        sh_state_size(c, FMUstate, size, function))
+FORWARD(SerializeFMUstate,
+        (fmi2Component c, fmi2FMUstate FMUstate, fmi2Byte serializedState[], size_t size),
+        sh_serialize_state(c, FMUstate, serializedState, size, function))
+FORWARD(DeSerializeFMUstate,
+        (fmi2Component c, const fmi2Byte serializedState[], size_t size, fmi2FMUstate *FMUstate),
+        sh_deserialize_state(c, serializedState, size, FMUstate, function))

@@ -86,10 +86,15 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance instance, fmi3Boolean tolera
     return (fmi3Status)sh_begin_initialization(entered, function);
 }
 
-fmi3Status fmi3ExitInitializationMode(fmi3Instance instance)
-{
-    return (fmi3Status)sh_end_initialization(instance, "fmi3ExitInitializationMode");
-}
+/* A function whose arguments the shell takes as they are. */
+#define FORWARD(Name, parameters, call)                                                            \
+    fmi3Status fmi3##Name parameters                                                               \
+    {                                                                                              \
+        static const char function[] = "fmi3" #Name;                                               \
+        return (fmi3Status)(call);                                                                 \
+    }
+
+FORWARD(ExitInitializationMode, (fmi3Instance instance), sh_end_initialization(instance, function))
 
 fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 currentCommunicationPoint,
                       fmi3Float64 communicationStepSize,
@@ -117,10 +122,7 @@ fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 currentCommunicationPoi
     return (fmi3Status)status;
 }
 
-fmi3Status fmi3Terminate(fmi3Instance instance)
-{
-    return (fmi3Status)sh_terminate(instance, "fmi3Terminate");
-}
+FORWARD(Terminate, (fmi3Instance instance), sh_terminate(instance, function))
 
 fmi3Status fmi3Reset(fmi3Instance instance)
 {
@@ -133,36 +135,18 @@ fmi3Status fmi3Reset(fmi3Instance instance)
     return fmi3OK;
 }
 
-fmi3Status fmi3GetFMUState(fmi3Instance instance, fmi3FMUState *FMUState)
-{
-    return (fmi3Status)sh_save_state(instance, FMUState, "fmi3GetFMUState");
-}
-
-fmi3Status fmi3SetFMUState(fmi3Instance instance, fmi3FMUState FMUState)
-{
-    return (fmi3Status)sh_restore_state(instance, FMUState, "fmi3SetFMUState");
-}
-
-fmi3Status fmi3FreeFMUState(fmi3Instance instance, fmi3FMUState *FMUState)
-{
-    return (fmi3Status)sh_free_state(instance, FMUState, "fmi3FreeFMUState");
-}
-
-fmi3Status fmi3SerializedFMUStateSize(fmi3Instance instance, fmi3FMUState FMUState, size_t *size)
-{
-    return (fmi3Status)sh_state_size(instance, FMUState, size, "fmi3SerializedFMUStateSize");
-}
-
-fmi3Status fmi3SerializeFMUState(fmi3Instance instance, fmi3FMUState FMUState,
-                                 fmi3Byte serializedState[], size_t size)
-{
-    return (fmi3Status)sh_serialize_state(instance, FMUState, serializedState, size,
-                                          "fmi3SerializeFMUState");
-}
-
-fmi3Status fmi3DeserializeFMUState(fmi3Instance instance, const fmi3Byte serializedState[],
-                                   size_t size, fmi3FMUState *FMUState)
-{
-    return (fmi3Status)sh_deserialize_state(instance, serializedState, size, FMUState,
-                                            "fmi3DeserializeFMUState");
-}
+FORWARD(GetFMUState, (fmi3Instance instance, fmi3FMUState *FMUState),
+        sh_save_state(instance, FMUState, function))
+FORWARD(SetFMUState, (fmi3Instance instance, fmi3FMUState FMUState),
+        sh_restore_state(instance, FMUState, function))
+FORWARD(FreeFMUState, (fmi3Instance instance, fmi3FMUState *FMUState),
+        sh_free_state(instance, FMUState, function))
+FORWARD(SerializedFMUStateSize, (fmi3Instance instance, fmi3FMUState FMUState, size_t *size),
+        sh_state_size(instance, FMUState, size, function))
+FORWARD(SerializeFMUState,
+        (fmi3Instance instance, fmi3FMUState FMUState, fmi3Byte serializedState[], size_t size),
+        sh_serialize_state(instance, FMUState, serializedState, size, function))
+FORWARD(DeserializeFMUState,
+        (fmi3Instance instance, const fmi3Byte serializedState[], size_t size,
+         fmi3FMUState *FMUState),
+        sh_deserialize_state(instance, serializedState, size, FMUState, function))

@@ -44,34 +44,23 @@ def test_both_versions_give_the_same_bits(name: str, start: dict[str, float], fm
 @each_kind
 def test_an_instance_after_a_reset_is_like_a_new_one(name: str, fmi: Fmi) -> None:
     with fmi(name) as fmu:
-        driver = Driver(fmu)
-        fmu.initialise()
-        initial, fresh = driver.result(), driver.run(STEPS)
-    with fmi(name) as fmu:
-        driver = Driver(fmu)
+        driver, new = Driver(fmu), fmu.saved()
         tunable = names(fmu, "parameter", "tunable")[:3]
         other = {n: 1.5 * float(fmu.variables[n].start) for n in tunable}
-        for point in POINTS[:6]:
+        fmu.initialise()
+        fresh = driver.run(STEPS)
+        for point in POINTS[:3]:
+            assert fmu.call("Reset") == OK
+            assert fmu.saved() == new
             fmu.initialise(other, start=3.7)  # values that the reset has to replace
             driver.run([(3.7 + t, h) for t, h in STEPS[:point]])
-            assert fmu.call("Reset") == OK
-            fmu.initialise()
-            assert driver.result() == initial
-            assert driver.run(STEPS) == fresh
-            assert fmu.call("Reset") == OK
-
-
-def test_after_a_reset_without_setup_the_start_time_is_0() -> None:
-    with FMI2() as fmu:
-        driver = Driver(fmu)
-        fmu.initialise()
-        fresh = driver.run(STEPS[:20])
         assert fmu.call("Reset") == OK
-        fmu.initialise(start=3.7)
-        assert fmu.step(3.7, 1e-3) == OK
-        assert fmu.call("Reset") == OK
-        assert fmu.call("EnterInitializationMode") == OK and fmu.exit() == OK
-        assert driver.run(STEPS[:20]) == fresh
+        if fmu.prefix == "fmi2":  # an importer may leave out the times: the start is 0
+            assert fmu.call("EnterInitializationMode") == OK
+        else:
+            assert fmu.enter() == OK
+        assert fmu.exit() == OK
+        assert driver.run(STEPS) == fresh
 
 
 @each_kind
@@ -225,16 +214,9 @@ def signed(state: bytearray) -> bytes:
     return bytes(state)
 
 
-def saved(fmu: Instance) -> bytes:
-    state = fmu.save()
-    data = fmu.serialise(state)
-    fmu.free(state)
-    return data
-
-
 def forge(fmu: Instance, format_: str, place: int, value: float) -> int:
     """The status when the state of an instance is read back with another value at a place."""
-    forged = bytearray(saved(fmu))
+    forged = bytearray(fmu.saved())
     struct.pack_into(f"<{format_}", forged, place, value)
     status, copy = fmu.deserialise(signed(forged))
     if status == OK:
@@ -257,13 +239,7 @@ def test_a_forged_state_that_is_none_of_fmi_or_out_of_range_is_refused() -> None
 def test_a_plant_whose_position_is_no_number_is_refused() -> None:
     """The positions stand behind the parameters: each place of the state is tried."""
     with FMI2("AwasPlant").initialise() as fmu:
-        places = range(HEADER, len(saved(fmu)), 8)
+        places = range(HEADER, len(fmu.saved()), 8)
         refused = [forge(fmu, "d", place, math.nan) for place in places]
         assert refused.count(ERROR) > 6
         assert any("never saves" in text for *_, text in fmu.messages)
-
-
-def test_a_step_has_a_finite_end() -> None:
-    with FMI2("AwasPlant").initialise({"noise.samplePeriod": 1e300}, start=1e308) as fmu:
-        assert fmu.step(1e308, 1e308) == ERROR
-        assert "ends beyond the largest number" in fmu.last_message

@@ -153,6 +153,13 @@ class _Instance:
         assert self.call(f"Serialize{self.state}", state, buffer, size) == OK
         return buffer.raw
 
+    def saved(self) -> bytes:
+        """The present state, serialised."""
+        state = self.save()
+        data = self.serialise(state)
+        self.free(state)
+        return data
+
     def deserialise(self, data: bytes) -> tuple[int, ctypes.c_void_p]:
         state = ctypes.c_void_p()
         buffer = ctypes.create_string_buffer(data, max(len(data), 1))

@@ -55,7 +55,7 @@ def limits(variable: Any) -> Iterator[tuple[str, float, float]]:
         values = [item.value for item in variable.declaredType.items]
         lowest, highest = values[0], values[-1]
     for which, limit, outward in (("min", lowest, -math.inf), ("max", highest, math.inf)):
-        if variable.type == "Real":
+        if variable.type in ("Real", "Float64"):
             real = float(outward if limit is None else limit)
             yield which, real, math.nextafter(real, outward)
         elif limit is not None:

@@ -1,12 +1,11 @@
-"""Joints solved by scipy: what the plants and the estimator are held to.
+"""The AwAS solved by scipy: what the plants and the estimator are held to.
 
-The AwAS, (5) with (28)-(31), and a pair with a motor on each side. They are written from the paper
-and share nothing with the plants that are generated to C. Parameters go by the names of the FMUs,
-whose start values stand here a second time.
+It is (5) with (28)-(31), written from the paper, and shares nothing with the plants that are
+generated to C.
 """
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, partial
 from itertools import pairwise
@@ -19,22 +18,8 @@ from scipy.integrate import solve_ivp
 Array = NDArray[np.float64]
 # d/dt of the state, of state and torques
 Derivative = Callable[..., Array]
-Parameters = Mapping[str, float]
 
-COULOMB_VELOCITY = 0.02  # rad/s, where tanh replaces the step of the sign
 SCREW, K_S = 0.0025 / (2 * math.pi), 14220.0  # of the AwAS [m/rad, N/m]
-_MOTOR = {"B": 2.3e-5, "D_theta": 1e-3, "gamma": 50.0, "tau_coulomb": 0.0}
-_LEVER_MOTOR = {"B": 1.29e-7, "D_theta": 0.0141, "gamma": 23.0, "tau_coulomb": 0.0}
-AWAS: Parameters = {
-    **{"link.M": 0.1, "link.D_q": 0.15, "link.mgl": 0.0, "link.tau_coulomb": 0.0},
-    **{f"motor.{name}": value for name, value in _MOTOR.items()},
-    **{f"motor_c.{name}": value for name, value in _LEVER_MOTOR.items()},
-}
-PAIR: Parameters = {
-    **{"link.M": 0.02, "link.D_q": 0.05, "link.mgl": 0.5, "link.tau_coulomb": 0.0},
-    **{f"motor_{i}.{name}": value for i in (1, 2) for name, value in _MOTOR.items()},
-    **{"spring_1.k": 0.0026, "spring_1.a": 8.9995, "spring_2.k": 0.0011, "spring_2.a": 8.9989},
-}
 
 
 def lever_arm(theta_c: Array | float) -> Array:
@@ -52,57 +37,23 @@ def stiffness(r: Array, phi: Array) -> Array:
     return np.asarray(2 * K_S * r**2 * np.cos(2 * phi))
 
 
-def awas(changed: Parameters) -> Derivative:
-    """Equations of the AwAS, but for these parameters as it starts.
-
-    State (q, theta, theta_c and their velocities), torques (tau, tau_c, tau_ext).
-    """
-    p = {**AWAS, **changed}
-
-    def derivative(state: Array, tau: float, tau_c: float, tau_ext: float) -> Array:
-        q, theta, theta_c, q_dot, theta_dot, theta_c_dot = state
-        r = 0.1 - SCREW * theta_c
-        tau_e = K_S * r**2 * math.sin(2 * (q - theta))
-        psi_e = -2 * K_S * SCREW * r * math.sin(q - theta) ** 2  # (31)
-        link = _link(p, q, q_dot, tau_e, tau_ext)
-        motor = _motor(p, "motor", theta_dot, tau, tau_e)
-        lever = _motor(p, "motor_c", theta_c_dot, tau_c, -psi_e)
-        return np.array([q_dot, theta_dot, theta_c_dot, link, motor, lever])
-
-    return derivative
+def awas(state: Array, tau: float, tau_c: float, tau_ext: float) -> Array:
+    """Derivative of the state (q, theta, theta_c and their velocities) under three torques."""
+    q, theta, theta_c, q_dot, theta_dot, theta_c_dot = state
+    r = 0.1 - SCREW * theta_c
+    tau_e = K_S * r**2 * math.sin(2 * (q - theta))
+    psi_e = -2 * K_S * SCREW * r * math.sin(q - theta) ** 2  # (31)
+    link = (tau_ext - 0.15 * q_dot - tau_e) / 0.1  # (2)
+    motor = _motor(theta_dot, tau, tau_e, B=2.3e-5, D_theta=1e-3, gamma=50.0)
+    lever = _motor(theta_c_dot, tau_c, -psi_e, B=1.29e-7, D_theta=0.0141, gamma=23.0)
+    return np.array([q_dot, theta_dot, theta_c_dot, link, motor, lever])
 
 
-def pair(changed: Parameters) -> Derivative:
-    """Equations of an antagonistic pair, but for these parameters as it starts.
-
-    State (q, theta_1, theta_2 and their velocities), torques (tau_1, tau_2, tau_ext).
-    """
-    p = {**PAIR, **changed}
-
-    def derivative(state: Array, tau_1: float, tau_2: float, tau_ext: float) -> Array:
-        q, theta_1, theta_2, q_dot, theta_dot_1, theta_dot_2 = state
-        tau_e_1 = p["spring_1.k"] * math.sinh(p["spring_1.a"] * (q - theta_1))
-        tau_e_2 = p["spring_2.k"] * math.sinh(p["spring_2.a"] * (q - theta_2))
-        link = _link(p, q, q_dot, tau_e_1 + tau_e_2, tau_ext)
-        motor_1 = _motor(p, "motor_1", theta_dot_1, tau_1, tau_e_1)
-        motor_2 = _motor(p, "motor_2", theta_dot_2, tau_2, tau_e_2)
-        return np.array([q_dot, theta_dot_1, theta_dot_2, link, motor_1, motor_2])
-
-    return derivative
-
-
-def _link(p: Parameters, q: float, q_dot: float, tau_e: float, tau_ext: float) -> float:
-    """Acceleration, (2)."""
-    friction = p["link.D_q"] * q_dot
-    friction += p["link.tau_coulomb"] * math.tanh(q_dot / COULOMB_VELOCITY)
-    return (tau_ext - friction - p["link.mgl"] * math.sin(q) - tau_e) / p["link.M"]
-
-
-def _motor(p: Parameters, motor: str, theta_dot: float, tau: float, tau_e: float) -> float:
+def _motor(
+    theta_dot: float, tau: float, tau_e: float, *, B: float, D_theta: float, gamma: float
+) -> float:
     """Acceleration after the gear, (3)."""
-    B, D_theta, gamma, tau_coulomb = (p[f"{motor}.{name}"] for name in _MOTOR)
-    coulomb = tau_coulomb * math.tanh(theta_dot / COULOMB_VELOCITY)
-    return (tau - coulomb - D_theta * gamma * theta_dot + tau_e / gamma) / (B * gamma)
+    return (tau - D_theta * gamma * theta_dot + tau_e / gamma) / (B * gamma)
 
 
 def solution(
@@ -175,7 +126,7 @@ def table1_recording() -> Recording:
     With the encoders of the paper and the noise (32), (33).
     """
     at_rest = np.array([0.0, 0.0, 0.030 / SCREW, 0.0, 0.0, 0.0])
-    states = solution(awas({}), lambda t: (paper_tau(t), paper_tau_c(t), 0.0), at_rest, 15.0)
+    states = solution(awas, lambda t: (paper_tau(t), paper_tau_c(t), 0.0), at_rest, 15.0)
     t = 1e-3 * np.arange(15001, dtype=np.float64)
     q, theta, theta_c, *_ = states(t)
     noise = np.random.default_rng(1)

@@ -169,15 +169,21 @@ def fmu_variables(plant: str) -> dict[str, Any]:
     return {v.name: v for v in unpacked(sigmahat.fmu(plant))[0].modelVariables}
 
 
+def outputs_of_fmu(
+    plant: str, inputs: Mapping[str, Sine], start: Mapping[str, float], duration: float
+) -> Series:
+    """All outputs without noise, at every T."""
+    names = [n for n, v in fmu_variables(plant).items() if v.causality == "output"]
+    silent = {"noise.tau_variance": 0.0, "noise.tau_e_variance": 0.0}
+    model = Plant(plant, {**silent, **start}, inputs, names)
+    return simulate(model, {}, T, round(duration / T)).plant
+
+
 def run(
     plant: str, inputs: Mapping[str, Sine], start: Mapping[str, float], duration: float
 ) -> tuple[Series, dict[str, NDArray[np.float64]]]:
     """The outputs of the FMU without noise and of the model, at every T, under all inputs."""
-    names = [n for n, v in fmu_variables(plant).items() if v.causality == "output"]
-    silent = {"noise.tau_variance": 0.0, "noise.tau_e_variance": 0.0}
-    recording = simulate(
-        Plant(plant, {**silent, **start}, inputs, names), {}, T, round(duration / T)
-    )
+    recorded = outputs_of_fmu(plant, inputs, start, duration)
     equations = []
     for name, s in inputs.items():
         phase = f"{2 * math.pi * s.frequency!r}*time + {s.phase!r}"
@@ -191,9 +197,20 @@ def run(
     result = compiled(text).simulate(t=(0.0, duration), dt=T, config=config)
     times = np.asarray(result.time)
     # Several rows at the time of an event: the last one is after it.
-    rows = np.searchsorted(times, recording.t + 1e-9) - 1
-    assert np.abs(times[rows] - recording.t).max() < 1e-9
-    return recording.plant, {n: np.asarray(result[f"p.{n}"])[rows] for n in names}
+    t = T * np.arange(round(duration / T) + 1)
+    rows = np.searchsorted(times, t + 1e-9) - 1
+    assert np.abs(times[rows] - t).max() < 1e-9
+    return recorded, {n: np.asarray(result[f"p.{n}"])[rows] for n in recorded.values}
+
+
+OTHER_VALUES = {
+    "motor_c.B": 1e-6,
+    "spring.knee_1": 5e-4,
+    "spring.knee_2": 1e-3,
+    "spring.step_at": 0.3,
+    "spring.step_for": 0.4,
+}
+"""Of parameters that have hardly any effect else."""
 
 
 def other_values(plant: str) -> dict[str, float]:
@@ -201,21 +218,24 @@ def other_values(plant: str) -> dict[str, float]:
     changed = {}
     for number, (name, v) in enumerate(fmu_variables(plant).items()):
         if v.causality == "parameter" and not name.startswith(("noise.", "signal.")):
-            value = float(v.start)
-            factor = 1 + 0.1 * math.sin(number)
-            changed[name] = value * factor if value else OTHER_THAN_0[v.unit] * factor
+            value = OTHER_VALUES.get(name) or float(v.start) or OTHER_THAN_0[v.unit]
+            changed[name] = value * (1 + 0.1 * math.sin(number))
     return changed
+
+
+def slow_inputs(plant: str) -> dict[str, Sine]:
+    """Slow, because the FMU takes them as linear over a step."""
+    names = [n for n, v in fmu_variables(plant).items() if v.causality == "input"]
+    amplitudes = {"tau_c": 8.0, "tau_1": 0.03, "tau_2": 0.03}
+    return {n: Sine(amplitudes.get(n, 0.3), 0.05 + 0.01 * i, 0.3) for i, n in enumerate(names)}
 
 
 @pytest.mark.parametrize(("as_it_starts", "duration"), [(True, 5.0), (False, 1.0)])
 @pytest.mark.parametrize("plant", PLANTS)
 def test_every_output_is_that_of_the_fmu(plant: str, as_it_starts: bool, duration: float) -> None:
-    """So every parameter and every input has the effect that it has in the FMU."""
-    names = [n for n, v in fmu_variables(plant).items() if v.causality == "input"]
-    amplitudes = {"tau_c": 8.0, "tau_1": 0.03, "tau_2": 0.03}
-    # Slow ones: the FMU takes them as linear over a step.
-    inputs = {n: Sine(amplitudes.get(n, 0.3), 0.05 + 0.01 * i, 0.3) for i, n in enumerate(names)}
-    fmu, model = run(plant, inputs, {} if as_it_starts else other_values(plant), duration)
+    """So the equations that are written twice, for CasADi and in Modelica, are the same."""
+    start = {} if as_it_starts else other_values(plant)
+    fmu, model = run(plant, slow_inputs(plant), start, duration)
     for name, values in model.items():
         error = np.abs(values - fmu[name])
         if name.startswith(("q_measured", "theta_measured", "theta_c_measured")):
@@ -225,6 +245,17 @@ def test_every_output_is_that_of_the_fmu(plant: str, as_it_starts: bool, duratio
             assert np.mean(apart > 1e-3) < 0.01 and apart.max() < 1.001, name
         else:
             assert error.max() <= AGREEMENT * np.ptp(fmu[name]), name
+
+
+@pytest.mark.parametrize("plant", PLANTS)
+def test_every_parameter_has_an_effect_that_this_shows(plant: str) -> None:
+    every = other_values(plant)
+    expected = outputs_of_fmu(plant, slow_inputs(plant), every, 1.0)
+    for name in every:
+        others = {n: value for n, value in every.items() if n != name}
+        found = outputs_of_fmu(plant, slow_inputs(plant), others, 1.0)
+        effect = [np.abs(found[n] - expected[n]).max() / np.ptp(expected[n]) for n in found.values]
+        assert max(effect) > 30 * AGREEMENT, name
 
 
 NOISE = """package Own

@@ -5,19 +5,22 @@ cover.
 """
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-import fmpy
 import pytest
 
 from c_sources import REPOSITORY
 from eva import analyse, library_source, with_fault
+from fmi_functions import HEADERS, of_an_instance
 
 PROOF = REPOSITORY / "tests" / "proof"
 SOURCES = REPOSITORY / "fmu_src"
 SHELL = SOURCES / "shell"
-FMI_HEADERS = Path(fmpy.__file__).parent / "c-code"
+DRIVERS = REPOSITORY / "tests" / "drivers"
+VARIABLES = r"(Real|Integer|Boolean|String|(U?Int|Float)\d+|Binary|Clock)"
+# No variable has one of these types: their functions are those of String but for their names.
+LIKE_STRING = r"[GS]et(Float32|U?Int8|U?Int16|UInt32|UInt64)"
 LENGTH_CHECK = """    if (size != block_size()) {
         return "is truncated or too long";
     }
@@ -50,7 +53,7 @@ sh_estimator_fmu_check check sh_parameters_check sh_estimator_check sh_estimator
 """
 OUTCOMES_OF_A_VERSION = {
     "fmi2": "begin sh_begin_set sh_set find fmi2SetInteger fmi2Instantiate",
-    "fmi3": "begin sh_begin_set sh_set find access_values fmi3SetInt32 fmi3SetInt64"
+    "fmi3": "begin sh_begin_set sh_set find fmi3SetInt32 fmi3SetInt64"
     " fmi3InstantiateCoSimulation fmi3EnterInitializationMode",
 }
 # Frama-C accepts no conversion to a function with other parameters. The pointer is only kept here,
@@ -66,6 +69,11 @@ APART_IN_A_PLANT = [
     *("sh_radau_integrate:0", "take:0", "sh_noise_normal:0", "step:30", "fmin:10", "fmax:10")
 ]
 
+# Of an instance when a call begins.
+APART_BY = [
+    f"//@ dynamic_split instance.{member};\n" for member in ("parameters_unchecked", "state")
+]
+
 slow = pytest.mark.slow("the analysis of a shell")
 
 
@@ -77,12 +85,14 @@ def alarms_of(
     shell: Path = SHELL,
     version: Sequence[Path] = (),
     outcomes: str = "",
+    macros: Mapping[str, object] | None = None,
 ) -> tuple[str, ...]:
     """The alarms of Eva for a program `shell_*.c`, and what it could not prove.
 
     shell     folder with the sources of the shell
     version   sources of a version of FMI, for a program that calls its functions
     outcomes  more functions after which failure and success are kept apart
+    macros    for the preprocessor
     """
     struct, header, own, replacements = MODELS[fmu]
     estimator = fmu == "StiffnessEstimator"
@@ -96,7 +106,7 @@ def alarms_of(
         "main",
         [
             *(REPOSITORY / "c" / "include", SOURCES, SOURCES / "fmi3", shell),
-            *(build / "fmu" / fmu, PROOF, FMI_HEADERS),
+            *(build / "fmu" / fmu, PROOF, HEADERS, DRIVERS, *{each.parent for each in version}),
         ],
         *("-eva-alloc-builtin", "fresh", "-eva-use-spec", "sh_report"),
         *("-eva-interprocedural-splits", "-eva-slevel", "40"),
@@ -104,10 +114,67 @@ def alarms_of(
         *("-eva-auto-loop-unroll", "0" if estimator else "8"),
         *("-eva-split-return-function", ",".join(f"{name}:0" for name in outcomes.split())),
         before=header,
-        macros={"MODEL": struct},
+        macros={"MODEL": struct, **(macros or {})},
     )
     assert found.proven >= 1  # the end of the program is reached
     return found.alarms
+
+
+def any_call(prefix: str, name: str, parameters: Sequence[str]) -> str:
+    """A call of a function of an instance, in C, with any arguments and NULL."""
+    numbers = {
+        "size_t": "any_size()",
+        f"{prefix}Real": "any_real()",
+        f"{prefix}Float64": "any_real()",
+    }
+    arguments = ["&instance"]
+    for parameter in parameters[1:]:
+        kind = parameter.removeprefix("const ").split("*")[0].split()[0]
+        if parameter.endswith("]"):
+            arguments.append("NULL")
+        elif "*" in parameter:
+            arguments.append(f"OR_NULL(any_array(sizeof({kind})))")
+        else:
+            arguments.append(numbers.get(kind, f"({kind})any_int()"))
+    return f"{prefix}{name}({', '.join(arguments)})"
+
+
+def any_access(prefix: str, name: str, parameters: Sequence[str]) -> str:
+    """A call of a function of variables, in C."""
+    arguments, lengths = ["&instance", "vr"], iter(["n", "any_number(n, way)"])
+    for parameter in parameters[2:]:
+        kind = parameter.removeprefix("const ").split()[0]
+        if not parameter.endswith("]"):
+            arguments.append(next(lengths))
+        elif kind == "size_t":  # lengths of binary values, of which there are none
+            arguments.append("NULL")
+        else:
+            arguments.append(f"any_array(way == 0 ? n * sizeof({kind}) : 0)")
+    return f"{prefix}{name}({', '.join(arguments)})"
+
+
+def write_calls(prefix: str, header: Path) -> None:
+    """Writes what shell_calls.c includes, for all functions of a version of FMI.
+
+    Those of the state of an FMU are in shell_calls.c itself.
+    """
+    calls, accesses = [], []
+    for name, parameters in of_an_instance(prefix).items():
+        if re.fullmatch(LIKE_STRING, name):
+            continue
+        if re.fullmatch(rf"[GS]et({VARIABLES}|Real(In|Out)putDerivatives)", name):
+            accesses.append(any_access(prefix, name, parameters))
+        elif "FMU" not in name:
+            calls.append(any_call(prefix, name, parameters))
+    lines = []
+    for size, function, bodies in (
+        ("CALLS", "call_any(int which)", calls),
+        ("ACCESSES", "access_any(int which, const uint32_t vr[], size_t n, int way)", accesses),
+    ):
+        cases = [f"case {i}: {body}; break;" for i, body in enumerate(bodies)]
+        lines += [f"enum {{ {size} = {len(bodies)} }};", f"static void {function}"]
+        lines += ["{", *APART_BY, "switch (which) {", *cases, "}", "}"]
+    header.write_text("\n".join(lines))
 
 
 def alarms_of_calls(
@@ -118,9 +185,11 @@ def alarms_of_calls(
     for source in sorted((SOURCES / version).glob("*.c")):
         copies.append(folder / source.name)
         copies[-1].write_text(LOGGER.sub("NULL", source.read_text()))
-    outcomes = OUTCOMES_OF_A_VERSION[version]
-    program = f"shell_calls_{version}.c"
-    return alarms_of(build, program, shell=shell, version=copies, outcomes=outcomes)
+    write_calls(version, folder / "calls.h")
+    outcomes, macros = OUTCOMES_OF_A_VERSION[version], {"SH_FMI": version[-1]}
+    return alarms_of(
+        build, "shell_calls.c", shell=shell, version=copies, outcomes=outcomes, macros=macros
+    )
 
 
 @slow

@@ -15,6 +15,7 @@ from fmpy.validation import validate_fmu
 from fmu_manipulation_toolbox.cli.fmutool import fmutool
 
 import controllers
+import fmi_functions
 import sigmahat
 from gate import missing, need
 from released_fmus import FMUS, TWINS, Run
@@ -103,13 +104,6 @@ def test_vdmcheck2_finds_no_error(name: str, released: Path, build: Path, tmp_pa
 
 # Exported functions and required libraries of the binaries, also of those in the wheels
 
-# Functions of the header that are not for co-simulation.
-MODEL_EXCHANGE = {
-    *("fmi2EnterEventMode", "fmi2NewDiscreteStates", "fmi2EnterContinuousTimeMode"),
-    *("fmi2CompletedIntegratorStep", "fmi2SetTime", "fmi2SetContinuousStates"),
-    *("fmi2GetDerivatives", "fmi2GetEventIndicators", "fmi2GetContinuousStates"),
-    "fmi2GetNominalsOfContinuousStates",
-}
 BY_THE_LINKER = {"__mh_dylib_header", "___dso_handle"}  # symbols of a library of macOS
 WHEEL = f"python/sigmahat-{sigmahat.__version__}-py3-none-{{}}.whl"
 ARCHITECTURES = ("x86_64", "aarch64")
@@ -133,10 +127,8 @@ def functions(archive: str) -> set[str]:
         headers = (Path(__file__).parents[2] / "harness" / "native").glob("*.h")
         text = "".join(header.read_text() for header in headers)
         return set(re.findall(r"^SH_EXPORT .*?(\w+)\(", text, re.M))
-    version = 3 if archive.endswith("_FMI3.fmu") else 2
-    header = Path(fmpy.__file__).parent / "c-code" / f"fmi{version}Functions.h"
-    pattern = rf"^#define \w+\s+fmi{version}FullName\((\w+)\)"
-    return set(re.findall(pattern, header.read_text(), re.M)) - MODEL_EXCHANGE
+    prefix = "fmi3" if archive.endswith("_FMI3.fmu") else "fmi2"
+    return {f"{prefix}{name}" for name in fmi_functions.functions(prefix)}
 
 
 def binary(released: Path, archive: str, place: str) -> object:
