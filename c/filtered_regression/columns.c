@@ -23,7 +23,6 @@
 
 #include "constants.h"
 #include "regression.h"
-#include "state_variable_filter.h"
 #include "torque_basis.h"
 
 static const sh_real DEAD_ZONES[SH_WIDTHS] = SH_DEAD_ZONES;
@@ -451,47 +450,38 @@ sh_real sh_columns_torque(const sh_columns *columns, const sh_joint_point *at, c
 /* ---- the row ----------------------------------------------------------------------------- */
 
 /* H x + T^2/12 s^2 H x of a signal that is not smooth, detail 2. */
-static sh_real as_if_smooth(const sh_state_variable_filter *filter, const sh_filter_design *design)
+static sh_real as_if_smooth(const sh_parameters *p, const sh_filtered *f, int i)
 {
-    return sh_state_variable_filter_output(filter) +
-           design->T * design->T / 12 * sh_state_variable_filter_second(filter, design);
+    return f->output[i] + p->samplePeriod * p->samplePeriod / 12 * f->second[i];
 }
 
 /* Filtered torque in y: -gamma tau_f, or the measured torque of the spring [N.m]. */
-static sh_real torque_in_y(const sh_parameters *p, const sh_filter_design *design,
-                           const sh_state_variable_filter *filter)
+static sh_real torque_in_y(const sh_parameters *p, const sh_filtered *f)
 {
-    const sh_state_variable_filter *tau = &filter[SH_FILTER_TORQUE];
-
-    return sh_is_measured(p) ? sh_state_variable_filter_output(tau)
-                             : -p->motor.gamma * as_if_smooth(tau, design);
+    return sh_is_measured(p) ? f->output[SH_FILTER_TORQUE]
+                             : -p->motor.gamma * as_if_smooth(p, f, SH_FILTER_TORQUE);
 }
 
-/* gamma^2 (B theta'' + D_theta theta') of a filtered position */
-static sh_real motor_torque(const sh_parameters *p, const sh_filter_design *design,
-                            const sh_state_variable_filter *theta)
+/* gamma^2 (B theta'' + D_theta theta') of a filtered position i */
+static sh_real motor_torque(const sh_parameters *p, const sh_filtered *f, int i)
 {
     return p->motor.gamma * p->motor.gamma *
-           (p->motor.B * sh_state_variable_filter_second(theta, design) +
-            p->motor.D_theta * sh_state_variable_filter_first(theta, design));
+           (p->motor.B * f->second[i] + p->motor.D_theta * f->first[i]);
 }
 
 /* y = gamma^2 B theta''_f + gamma^2 D_theta theta'_f - gamma tau_f, or the torque of the spring */
-sh_real sh_columns_y(const sh_parameters *p, const sh_filter_design *design,
-                     const sh_state_variable_filter *filter)
+sh_real sh_columns_y(const sh_parameters *p, const sh_filtered *f)
 {
-    return torque_in_y(p, design, filter) +
-           (sh_is_measured(p) ? 0 : motor_torque(p, design, &filter[SH_FILTER_THETA]));
+    return torque_in_y(p, f) + (sh_is_measured(p) ? 0 : motor_torque(p, f, SH_FILTER_THETA));
 }
 
-/* sigma S + gamma^2 (D_theta S' + B S''): the error of y by the error S of theta; 0 while sigma is not
- * known, detail 13.
+/* sigma S + gamma^2 (D_theta S' + B S''): the error of y by the error S of theta, which is signal i; 0 while sigma is
+ * not known, detail 13.
  */
-static sh_real encoder_error(const sh_regression_state *state, const sh_parameters *p,
-                             const sh_state_variable_filter *S)
+static sh_real encoder_error(const sh_regression_state *state, const sh_parameters *p, int i)
 {
-    const sh_real error = state->sigma * sh_state_variable_filter_output(S) +
-                          motor_torque(p, &state->signals.design, S);
+    const sh_filtered *f = &state->mean.filtered;
+    const sh_real error = state->sigma * f->output[i] + motor_torque(p, f, i);
 
     return state->stiffness_known ? sh_limited(error, SH_LARGEST_ENCODER_ERROR) : 0;
 }
@@ -500,38 +490,33 @@ static sh_real encoder_error(const sh_regression_state *state, const sh_paramete
 static sh_real entry_of(const sh_regression_state *state, const sh_parameters *p,
                         const sh_column *column)
 {
-    const sh_filter_design *design = &state->signals.design;
-    const sh_state_variable_filter *filter = state->mean.filter;
-    const sh_state_variable_filter *theta = &filter[SH_FILTER_THETA],
-                                   *tau = &filter[SH_FILTER_TORQUE];
-    const sh_state_variable_filter *sign = &filter[SH_FILTER_SIGN];
+    const sh_filtered *f = &state->mean.filtered;
     const sh_real gamma = p->motor.gamma, gain = sh_is_measured(p) ? 1 : -gamma;
 
     switch (column->kind) {
     case SH_COLUMN_NOMINAL:
-        return sh_state_variable_filter_output(&filter[SH_FILTER_NOMINAL]);
+        return f->output[SH_FILTER_NOMINAL];
     case SH_COLUMN_DAMPING: /* (phi l^j)': as the stiffness, the damping may depend on the set-point */
-        return sh_state_variable_filter_first(
-            &filter[column->j > 0 ? SH_FILTER_PHI_SET : SH_FILTER_PHI], design);
+        return f->first[column->j > 0 ? SH_FILTER_PHI_SET : SH_FILTER_PHI];
     case SH_COLUMN_LOAD: /* -|tau_e| s through the filter */
-        return as_if_smooth(&filter[SH_FILTER_LOAD], design);
+        return as_if_smooth(p, f, SH_FILTER_LOAD);
     case SH_COLUMN_DRIVE: /* -|gamma tau_f| s_f */
-        return -sh_fabs(torque_in_y(p, design, filter)) * as_if_smooth(sign, design);
+        return -sh_fabs(torque_in_y(p, f)) * as_if_smooth(p, f, SH_FILTER_SIGN);
     case SH_COLUMN_DELAY: /* gamma (tau' + delay tau''/2) */
-        return -gain * (sh_state_variable_filter_first(tau, design) +
-                        state->delay / 2 * sh_state_variable_filter_second(tau, design));
+        return -gain *
+               (f->first[SH_FILTER_TORQUE] + state->delay / 2 * f->second[SH_FILTER_TORQUE]);
     case SH_COLUMN_REVERSAL: /* |gamma| s'_f */
-        return sh_fabs(gamma) * sh_state_variable_filter_first(sign, design);
+        return sh_fabs(gamma) * f->first[SH_FILTER_SIGN];
     case SH_COLUMN_SIN_M:
-        return encoder_error(state, p, &filter[SH_FILTER_SIN_M]);
+        return encoder_error(state, p, SH_FILTER_SIN_M);
     case SH_COLUMN_COS_M:
-        return encoder_error(state, p, &filter[SH_FILTER_COS_M]);
+        return encoder_error(state, p, SH_FILTER_COS_M);
     case SH_COLUMN_VISCOUS: /* -gamma^2 D_theta theta'_f */
-        return -gamma * gamma * p->motor.D_theta * sh_state_variable_filter_first(theta, design);
+        return -gamma * gamma * p->motor.D_theta * f->first[SH_FILTER_THETA];
     case SH_COLUMN_COULOMB: /* -|gamma| s_f */
-        return -sh_fabs(gamma) * as_if_smooth(sign, design);
+        return -sh_fabs(gamma) * as_if_smooth(p, f, SH_FILTER_SIGN);
     case SH_COLUMN_INERTIA: /* -gamma^2 B theta''_f */
-        return -gamma * gamma * p->motor.B * sh_state_variable_filter_second(theta, design);
+        return -gamma * gamma * p->motor.B * f->second[SH_FILTER_THETA];
     default:
         return 0;
     }
@@ -539,9 +524,7 @@ static sh_real entry_of(const sh_regression_state *state, const sh_parameters *p
 
 void sh_columns_row(const sh_regression_state *state, const sh_parameters *p, sh_real *x)
 {
-    const sh_filter_design *design = &state->signals.design;
-    const sh_state_variable_filter *filter = state->mean.filter;
-    const sh_real share = 1 / (sh_real)state->signals.decimation;
+    const sh_filtered *f = &state->mean.filtered;
     const int size = state->columns.size;
     int i;
 
@@ -549,18 +532,15 @@ void sh_columns_row(const sh_regression_state *state, const sh_parameters *p, sh
         const sh_column *column = &state->columns.column[i];
 
         if (sh_column_is(column, SH_IS_FILTERED)) {
-            x[i] = share * state->mean.output[i];
+            x[i] = state->mean.output[i];
         } else if (sh_is_measured(p) && sh_column_is(column, SH_IS_MOTOR)) {
             x[i] = 0;
         } else {
             x[i] = column->prior * entry_of(state, p, column);
         }
     }
-    x[size + SH_RIGHT_GAIN] = torque_in_y(p, design, filter);
-    x[size + SH_RIGHT_Y] = sh_columns_y(p, design, filter);
-    if (state->columns.has_nominal) {
-        x[size + SH_RIGHT_Y] -= sh_state_variable_filter_output(&filter[SH_FILTER_NOMINAL]);
-    }
+    x[size + SH_RIGHT_GAIN] = torque_in_y(p, f);
+    x[size + SH_RIGHT_Y] = sh_columns_y(p, f) - f->output[SH_FILTER_NOMINAL];
 }
 
 /* nu = lambda epsilon / (1 - lambda c s'), s' = slope: noise of the torque. It is taken out of the column, and

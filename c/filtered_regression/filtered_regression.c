@@ -210,7 +210,6 @@ static void report_coefficients(sh_regression_state *state, const sh_parameters 
 static int report(sh_regression_state *state, const sh_parameters *p, sh_joint_point *at, sh_real y,
                   int settled, int news, sh_estimate *estimate)
 {
-    const sh_signals *signals = &state->signals;
     const sh_real knees = sh_columns_judge_knees(&state->columns, p, state->beta, at);
     sh_point point;
     sh_real per_gain;
@@ -232,8 +231,7 @@ static int report(sh_regression_state *state, const sh_parameters *p, sh_joint_p
                                    : 0;
     estimate->tau_e_residual = y;
     estimate->phi = at->phi;
-    estimate->theta_dot =
-        sh_state_variable_filter_first(&signals->filter[SH_FILTER_THETA], &signals->design);
+    estimate->theta_dot = at->filtered.first[SH_FILTER_THETA];
     estimate->a = settled ? 1 : 0;
     estimate->rho = state->row.rho;
     estimate->epsilon = state->row.epsilon;
@@ -288,10 +286,25 @@ static int are_acceptable(const sh_joint_point *at, sh_real y, const sh_columns 
            sh_square(y) <= SH_LARGE;
 }
 
-/* Adds the states of the filters to those of the samples before. Returns 1 if a row is complete: then the mean
- * of the states makes it (detail 16).
- */
-static int take_sample(sh_regression_state *state, const sh_parameters *p)
+/* Adds a share of the signals behind the filters. */
+static void add_signals(sh_mean *mean, const sh_filters *filters, const sh_filtered *now,
+                        int columns, sh_real share)
+{
+    int i;
+
+    for (i = 0; i < SH_FILTERS; ++i) {
+        mean->filtered.output[i] += share * now->output[i];
+        mean->filtered.first[i] += share * now->first[i];
+        mean->filtered.second[i] += share * now->second[i];
+    }
+    for (i = 0; i < columns; ++i) {
+        mean->output[i] +=
+            share * (filters->input[SH_FILTERS + i] - filters->behind[2][SH_FILTERS + i]);
+    }
+}
+
+/* Adds a sample to those before. Returns 1 if a row is complete: then their mean makes it (detail 16). */
+static int take_sample(sh_regression_state *state, const sh_parameters *p, const sh_filtered *now)
 {
     sh_signals *signals = &state->signals;
     const sh_real share = 1 / (sh_real)signals->decimation, rough = sh_signals_roughness(signals);
@@ -299,14 +312,14 @@ static int take_sample(sh_regression_state *state, const sh_parameters *p)
     sh_row *row = &state->row;
 
     sh_noise_watch(&state->history, signals, p, rough);
-    sh_state_variable_filter_add(mean->filter, signals->filter, SH_FILTERS, share);
+    add_signals(mean, &signals->filters, now, state->columns.filtered, share);
     mean->rough += rough * share;
     mean->moved += sh_fabs(signals->theta_before[0] - signals->theta_before[1]) > 0 ? share : 0;
     mean->samples += 1;
     if (mean->samples < signals->decimation) {
         return 0;
     }
-    sh_column_filters_rest(&signals->columns, state->columns.filtered);
+    sh_filters_rest(&signals->filters, SH_FILTERS + state->columns.filtered);
     sh_columns_row(state, p, row->x);
     row->rough = mean->rough;
     row->moved = mean->moved;
@@ -487,7 +500,6 @@ static void resume(sh_regression_state *state)
 static int refuse(sh_regression_state *state, const sh_history *before)
 {
     state->signals.begun = 0; /* the filters start again, so their old state does not matter */
-    (void)memset(&state->mean, 0, sizeof state->mean);
     state->history = *before;
     state->sigma = state->delay = state->y = 0;
     state->stiffness_known = 0;
@@ -511,13 +523,13 @@ static int tick_filtered_regression(sh_estimator *estimator, const sh_parameters
         state->history.change_age += (1 + estimator->skipped) * p->samplePeriod;
     }
     sh_signals_take(state, p, z, set_point, &at); /* 1. Filter the signals. */
-    y = sh_columns_y(p, &state->signals.design, state->signals.filter);
+    y = sh_columns_y(p, &at.filtered);
     if (!are_acceptable(&at, y, &state->columns)) {
         return refuse(state, &before);
     }
     state->history.settling = sh_fmax(state->history.settling - p->samplePeriod, 0);
     settled = !(state->history.settling > 0);
-    complete = settled && take_sample(state, p); /* 2. Build a row of K samples. */
+    complete = settled && take_sample(state, p, &at.filtered); /* 2. Build a row of K samples. */
     if (complete) {
         const sh_row_noise noise = sh_noise_of_row(state, p);
 
@@ -535,7 +547,6 @@ static int tick_filtered_regression(sh_estimator *estimator, const sh_parameters
     }
     if (!settled) {
         state->row.epsilon = state->row.rho = 0;
-        (void)memset(&state->mean, 0, sizeof state->mean); /* the filters add every sample */
     }
     return report(state, p, &at, y, settled, news, estimate) ? 1 : refuse(state, &before); /* 7. */
 }

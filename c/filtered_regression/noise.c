@@ -24,7 +24,8 @@ static sh_real inertial_noise(const sh_signals *signals, const sh_parameters *p)
 /* gamma^2 (tau_C^2 + P_CC) u_f^2: variance of the friction whose sign is unknown [(N.m)2] */
 static sh_real friction_variance(const sh_regression_state *state, const sh_parameters *p)
 {
-    const sh_real u_f = sh_state_variable_filter_output(&state->signals.filter[SH_FILTER_UNKNOWN]);
+    const sh_filters *filters = &state->signals.filters;
+    const sh_real u_f = filters->input[SH_FILTER_UNKNOWN] - filters->behind[2][SH_FILTER_UNKNOWN];
     const int size = state->columns.size, C = size - (p->prior.B > 0 ? 2 : 1);
     sh_real c[SH_MAX_COLUMNS] = {0}, square; /* of the coefficient of tau_C */
 

@@ -30,6 +30,7 @@ typedef struct {
     const sh_real *stop;        /* [size: SH_WIDTHS] stop operators of hysteresis [rad] */
     sh_real F[SH_MAX_COLUMNS];  /* signals of the first columns, as far as they have one */
     sh_real dF[SH_MAX_COLUMNS]; /* and their slopes over phi, of the curve of the spring alone */
+    sh_filtered filtered;       /* at a tick: signals behind the filters */
 } sh_joint_point;
 
 /* Variance of a row, whose inverse is its weight. */
@@ -129,9 +130,8 @@ void sh_columns_move_stops(sh_real *stop, const sh_parameters *p, sh_real change
 /* Torque of the spring for coefficients beta [N.m]. */
 sh_real sh_columns_torque(const sh_columns *columns, const sh_joint_point *at, const sh_real *beta);
 
-/* y [N.m] at a state of the filters [size: SH_FILTERS]. */
-sh_real sh_columns_y(const sh_parameters *p, const sh_filter_design *design,
-                     const sh_state_variable_filter *filter);
+/* y [N.m] of filtered signals. */
+sh_real sh_columns_y(const sh_parameters *p, const sh_filtered *f);
 
 /* The row x [size: SH_MAX_ROW] by the mean of the filters: columns, then right-hand sides, of which the last is y
  * less the torque of the nominal curve.
@@ -173,7 +173,7 @@ void sh_signals_start(sh_signals *signals, sh_history *history, const sh_paramet
 /* Lets the estimate wait until the filters have settled. */
 void sh_signals_unsettle(sh_signals *signals, sh_history *history);
 
-/* Takes a sample into the history and into all filters. Sets where the joint is. */
+/* Takes a sample into the history and into all filters. Sets where the joint is, also behind the filters. */
 void sh_signals_take(sh_regression_state *state, const sh_parameters *p, const sh_measurement *z,
                      sh_real set_point, sh_joint_point *at);
 
