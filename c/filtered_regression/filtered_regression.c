@@ -140,14 +140,9 @@ static void read_coefficients(const sh_regression_state *state, const sh_paramet
     }
 }
 
-/* Whether few blocks have a misfit, so that the columns that may explain it have not all been tried. */
-static int is_unexplained(const sh_regression_state *state, const sh_parameters *p)
-{
-    return p->regression.memory > 0 && state->blocks.count < SH_UNTRIED_BLOCKS &&
-           state->misfit > SH_UNEXPLAINED;
-}
-
-/* Why the estimate is not confident. The misfit widens sigma_std, so it has a limit of its own for few blocks only. */
+/* Why the estimate is not confident. The misfit widens sigma_std, so it has a limit of its own for few blocks only: then
+ * the columns that may explain it have not all been tried.
+ */
 static int doubt_of(const sh_regression_state *state, const sh_parameters *p,
                     const sh_estimate *estimate)
 {
@@ -157,7 +152,8 @@ static int doubt_of(const sh_regression_state *state, const sh_parameters *p,
     if (!(estimate->sigma_std < p->limit.relative_std * sh_fabs(estimate->sigma))) {
         doubt = state->variance_factor > SH_CONTRADICTION ? SH_DOUBT_MISFIT : SH_DOUBT_NOT_EXCITED;
     }
-    if (is_unexplained(state, p)) {
+    if (p->regression.memory > 0 && state->blocks.count < SH_UNTRIED_BLOCKS &&
+        state->misfit > SH_UNEXPLAINED) {
         doubt = SH_DOUBT_MISFIT;
     }
     if (phi > SH_LEAST_LIMIT * p->range.phi && phi > largest_deformation_filtered_regression(p)) {
@@ -307,11 +303,10 @@ static void add_signals(sh_mean *mean, const sh_filters *filters, const sh_filte
 static int take_sample(sh_regression_state *state, const sh_parameters *p, const sh_filtered *now)
 {
     sh_signals *signals = &state->signals;
-    const sh_real share = 1 / (sh_real)signals->decimation, rough = sh_signals_roughness(signals);
+    const sh_real share = 1 / (sh_real)signals->decimation, rough = sh_noise_of_theta(state, p);
     sh_mean *mean = &state->mean;
     sh_row *row = &state->row;
 
-    sh_noise_watch(&state->history, signals, p, rough);
     add_signals(mean, &signals->filters, now, state->columns.filtered, share);
     mean->rough += rough * share;
     mean->moved += sh_fabs(signals->theta_before[0] - signals->theta_before[1]) > 0 ? share : 0;
@@ -325,26 +320,6 @@ static int take_sample(sh_regression_state *state, const sh_parameters *p, const
     row->moved = mean->moved;
     (void)memset(mean, 0, sizeof *mean);
     return 1;
-}
-
-/* Weight 1 / R of the row x [size: count]; 0 if the numbers are too large. */
-static sh_real weight_of(const sh_row_noise *noise, const sh_real *x, int count)
-{
-    const sh_real w = 1 / noise->R;
-
-    return w > 0 && w * sh_sum_of_products(x, x, count) <= SH_LARGE ? w : 0;
-}
-
-/* epsilon = y - x' beta. Its share that is noise of the torque is removed from the column of the
- * motor's torque, which contains this noise too; then epsilon is computed again (detail 14).
- */
-static sh_real predict(const sh_regression_state *state, const sh_row_noise *noise, sh_real *x,
-                       sh_column_noise *left)
-{
-    const int size = state->columns.size;
-    const sh_real epsilon = x[size + SH_RIGHT_Y] - sh_sum_of_products(x, state->beta, size);
-
-    return epsilon - sh_columns_remove_noise(state, noise, epsilon, x, left);
 }
 
 /* Updates what is noise in columns: of b (detail 7), of the torque (14), and of the spring (point 5). */
@@ -374,27 +349,25 @@ static void update_noise(sh_regression_state *state, const sh_parameters *p,
 /* Takes a complete row, steps 3 to 5 of the tick. Returns 0 if its numbers are too large. */
 static int use_row(sh_regression_state *state, const sh_parameters *p, const sh_row_noise *noise)
 {
-    const int size = state->columns.size;
+    const int size = state->columns.size, count = size + SH_RIGHT_SIDES;
     sh_row *row = &state->row;
     sh_column_noise left;
     sh_real share; /* 1 / (1 + rho) */
 
-    row->w = weight_of(noise, row->x, size + SH_RIGHT_SIDES); /* 3. Weigh it. */
+    row->w = 1 / noise->R; /* 3. Weigh it. */
     row->lasting = noise->lasting;
-    if (!(row->w > 0)) {
+    if (!(row->w > 0 && row->w * sh_sum_of_products(row->x, row->x, count) <= SH_LARGE)) {
+        row->w = 0;
         return 0;
     }
-    row->epsilon = predict(state, noise, row->x, &left); /* 4. Predict and compare. */
+    row->epsilon = row->x[size + SH_RIGHT_Y] - sh_sum_of_products(row->x, state->beta, size);
+    /* 4. Predict and compare. */
+    row->epsilon -= sh_columns_remove_noise(state, noise, row->epsilon, row->x, &left);
     share = sh_posterior_take(&state->posterior, row->x, size, row->w); /* 5. Update. */
     row->rho = share > 0 ? sh_limited((1 - share) / share, SH_LARGEST_OUTPUT) : SH_LARGEST_OUTPUT;
     update_noise(state, p, &left, row->w);
     row->tick = 0;
     return 1;
-}
-
-static int is_block_full(const sh_blocks *blocks)
-{
-    return blocks->rows >= blocks->length;
 }
 
 /* Steps that a refit makes in a step of the row. */
@@ -415,7 +388,7 @@ static int steps_of_refit(const sh_signals *signals)
  */
 static int advance_block(sh_regression_state *state, const sh_parameters *p, int step)
 {
-    const int was_full = is_block_full(&state->blocks), steps = steps_of_refit(&state->signals);
+    const int was_full = sh_block_is_full(&state->blocks), steps = steps_of_refit(&state->signals);
     int news = 0, i;
 
     if (step == 0) {
@@ -423,7 +396,7 @@ static int advance_block(sh_regression_state *state, const sh_parameters *p, int
         sh_blocks_take(state);
     }
     sh_blocks_end(state, p, step);
-    if (was_full || is_block_full(&state->blocks) || sh_change_widens_friction(state, step)) {
+    if (was_full || sh_block_is_full(&state->blocks) || sh_change_widens_friction(state, step)) {
         return 0;
     }
     for (i = 0; i < steps; ++i) {
@@ -438,8 +411,7 @@ static int advance_block(sh_regression_state *state, const sh_parameters *p, int
 static int take_step(sh_regression_state *state, const sh_parameters *p, int step)
 {
     if (step == 0) {
-        sh_posterior_estimate(&state->posterior, p->prior.B, state->beta, state->per_gain,
-                              state->columns.size);
+        sh_posterior_estimate(state, p->prior.B);
         return SH_NEW_COEFFICIENTS;
     }
     if (step == 1) {
@@ -484,16 +456,9 @@ static int take_steps(sh_regression_state *state, const sh_parameters *p)
 static void wait_until_settled(sh_regression_state *state)
 {
     sh_signals_unsettle(&state->signals, &state->history);
-    if (!is_block_full(&state->blocks)) { /* else it will be taken and emptied */
+    if (!sh_block_is_full(&state->blocks)) { /* else it will be taken and emptied */
         sh_blocks_interrupt(&state->blocks);
     }
-}
-
-/* After a gap, or a change of the modality, the filters start again. */
-static void resume(sh_regression_state *state)
-{
-    state->signals.begun = 0;
-    wait_until_settled(state);
 }
 
 /* Forgets what the last row depended on: the next one must not be as large because of it. Returns 0. */
@@ -517,7 +482,8 @@ static int tick_filtered_regression(sh_estimator *estimator, const sh_parameters
     sh_real y;
 
     if (estimator->started && (estimator->skipped > 0 || state->modality != p->modality)) {
-        resume(state);
+        state->signals.begun = 0; /* the filters start again */
+        wait_until_settled(state);
     }
     if (state->history.change_age >= 0) {
         state->history.change_age += (1 + estimator->skipped) * p->samplePeriod;

@@ -7,9 +7,9 @@
 #include "state_variable_filter.h"
 
 /* W_c = sqrt(s_tau / (B |gamma| s_n)), s_n = count / sqrt(12), is where the noise of the torque and the
- * rounding of theta contribute equally to y; point 1.
+ * rounding of theta contribute equally to y; point 1. The filter is designed for w T >= 1e-4 alone.
  */
-sh_real sh_regression_bandwidth(const sh_parameters *p)
+static sh_real bandwidth_of(const sh_parameters *p)
 {
     const sh_real s_n = sh_encoder_count(p->encoder.theta) / sh_sqrt(12);
     const sh_real rounding = p->motor.B * sh_fabs(p->motor.gamma) * s_n;
@@ -23,9 +23,9 @@ sh_real sh_regression_bandwidth(const sh_parameters *p)
 }
 
 /* K = 2.5 / (w T), 1..8: rows of more samples would lose what the filter leaves. */
-int sh_regression_decimation(const sh_parameters *p)
+static int decimation_of(const sh_parameters *p)
 {
-    const sh_real wT = sh_regression_bandwidth(p) * p->samplePeriod;
+    const sh_real wT = bandwidth_of(p) * p->samplePeriod;
     int K = SH_LONGEST_ROW;
 
     if (p->regression.decimation > 0) {
@@ -41,8 +41,8 @@ void sh_signals_start(sh_signals *signals, sh_history *history, const sh_paramet
 {
     signals->count = sh_encoder_count(p->encoder.theta);
     signals->count_q = sh_encoder_count(p->encoder.q);
-    signals->design = sh_state_variable_filter_design(sh_regression_bandwidth(p), p->samplePeriod);
-    signals->decimation = sh_regression_decimation(p);
+    signals->design = sh_state_variable_filter_design(bandwidth_of(p), p->samplePeriod);
+    signals->decimation = decimation_of(p);
     sh_state_variable_filter_noise(&signals->design, 1, signals->decimation, &signals->gain,
                                    &signals->gain_second);
     signals->gain /= (sh_real)signals->decimation; /* of a mean of K samples */
@@ -77,7 +77,9 @@ static void take_deformation(sh_history *history, const sh_signals *signals, con
  */
 static sh_real load_of(const sh_regression_state *state, const sh_joint_point *at)
 {
-    return state->stiffness_known ? sh_columns_torque(&state->columns, at, state->beta) : state->y;
+    return state->stiffness_known
+               ? at->tau_nominal + sh_sum_of_products(at->F, state->beta, state->columns.spring)
+               : state->y;
 }
 
 /* Sets the inputs of the filters [size: SH_FILTERS]: at the time of the sample, or the mean since the last one. */
@@ -163,12 +165,4 @@ void sh_signals_take(sh_regression_state *state, const sh_parameters *p, const s
     }
     state->signals.torque_before = torque;
     sh_filters_read(&state->signals.filters, &state->signals.design, &at->filtered);
-}
-
-/* The fourth difference of white noise of variance 1 has the variance 70. */
-sh_real sh_signals_roughness(const sh_signals *signals)
-{
-    const sh_real *theta = signals->theta_before;
-
-    return sh_square(theta[0] - 4 * theta[1] + 6 * theta[2] - 4 * theta[3] + theta[4]) / 70;
 }
