@@ -61,11 +61,10 @@ int sh_change_widens_friction(sh_regression_state *state, int step)
         return 0;
     }
     if (step == 0) {
-        refit->w = sh_information_drift_sample(blocks, change->widened, 1, refit->x);
+        sh_drift_step(refit, blocks, change->widened, 1, step);
         change->widened += refit->w < 0 ? 0 : 1; /* nothing is known about it */
     } else if (step == 1 && refit->w < 0) {
-        (void)sh_information_take(blocks, refit->x, refit->w);
-        refit->w = 0;
+        sh_drift_step(refit, blocks, change->widened, 1, step);
         change->widened += 1;
     }
     return 1;
@@ -135,32 +134,10 @@ static void decide(sh_regression_state *state, const sh_parameters *p)
     }
 }
 
-/* The usual misfit is a mean as the usual size of errors is, of 1.7 times itself at most. */
-static void watch_misfit(sh_change *change, sh_real misfit)
+/* The mean of a value >= 1 over so many blocks, in which it counts at most as so many times the mean. */
+static sh_real usual(sh_real mean, sh_real value, sh_real most, sh_real blocks)
 {
-    const sh_real usual = change->usual_misfit;
-
-    change->usual_misfit += (sh_fmin(misfit, SH_SUDDEN_MISFIT * usual) - usual) / change->judged;
-}
-
-/* h += min(z_2 / l, 50) - min(z_1 / l, 50), but not in the first block of either hypothesis */
-static void compare_with_friction(sh_change *change, sh_real level, sh_real spring,
-                                  sh_real friction)
-{
-    if (change->friction_blocks > 1 && change->blocks > 0) {
-        change->preference += sh_fmin(friction / level, SH_LARGEST_EVIDENCE) -
-                              sh_fmin(spring / level, SH_LARGEST_EVIDENCE);
-    }
-    change->friction_blocks += change->friction_blocks > 0 ? 1 : 0;
-}
-
-/* The usual size of errors is their mean, in which a block counts as 9 times itself at most. */
-static void watch_level(sh_change *change, sh_real before)
-{
-    const sh_real level = change->level;
-
-    change->level =
-        sh_fmax(level + (sh_fmin(before, SH_LARGEST_LEVEL * level) - level) / change->judged, 1);
+    return sh_fmax(mean + (sh_fmin(value, most * mean) - mean) / blocks, 1);
 }
 
 /* g = max(0, g + min(z_0 / l, c) - 2 min(z_1 / l, 12.5) - 2), c = max(50 / m, 25), where z are squares of errors over
@@ -180,12 +157,18 @@ void sh_change_judge(sh_regression_state *state, const sh_parameters *p, sh_real
         return;
     }
     change->judged = sh_fmin(change->judged + 1, SH_LEVEL_BLOCKS);
-    watch_level(change, before);
-    watch_misfit(change, sh_sqrt(state->misfit));
+    change->level = usual(level, before, SH_LARGEST_LEVEL, change->judged);
+    change->usual_misfit =
+        usual(change->usual_misfit, sh_sqrt(state->misfit), SH_SUDDEN_MISFIT, change->judged);
     if (state->blocks.count < SH_SHORTEST_PAST) {
         return;
     }
-    compare_with_friction(change, level, spring, friction);
+    if (change->friction_blocks > 1 &&
+        change->blocks > 0) { /* not in the first block of either hypothesis */
+        change->preference += sh_fmin(friction / level, SH_LARGEST_EVIDENCE) -
+                              sh_fmin(spring / level, SH_LARGEST_EVIDENCE);
+    }
+    change->friction_blocks += change->friction_blocks > 0 ? 1 : 0;
     most = sh_fmax(SH_LARGEST_EVIDENCE / change->usual_misfit, SH_LEAST_LIMIT_OF_EVIDENCE);
     change->blocks += 1;
     change->evidence = sh_fmax(change->evidence + sh_fmin(before / level, most) -

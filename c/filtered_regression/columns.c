@@ -23,7 +23,6 @@
 
 #include "constants.h"
 #include "regression.h"
-#include "state_variable_filter.h"
 #include "torque_basis.h"
 
 static const sh_real DEAD_ZONES[SH_WIDTHS] = SH_DEAD_ZONES;
@@ -52,38 +51,39 @@ int sh_has_nominal_curve(const sh_parameters *p)
 
 /* ---- the table --------------------------------------------------------------------------- */
 
-/* A std deviation of sh_parameters.prior is given in this unit. */
-enum { ONE, TAU_E, K_0, TAU_C };
+/* A std deviation of sh_parameters.prior is given in this unit. The last two are 0 without dry friction of the motor, and
+ * without a curve rls.eta_0; else 1.
+ */
+enum { ONE, TAU_E, K_0, TAU_C, IF_DRY, IF_CURVE };
 
 #define PRIOR(member) (int)offsetof(sh_parameters, prior.member)
-#define CURVE (SH_IS_SPRING | SH_IS_CURVE)
-#define FILTERED_CURVE (CURVE | SH_IS_FILTERED)
-#define POWER (FILTERED_CURVE | SH_IS_POWER)
-#define MOTOR (SH_IS_MOTOR | SH_IS_EQUATION)
+#define POWER (SH_IS_CURVE | SH_IS_POWER)
 
-/* The signal of a filtered column is in signal_of, the entry of another one in entry_of. */
+/* Those before DAMPING have a filter of their own, whose signal is in signal_of. The entry of the others is in
+ * entry_of.
+ */
 const sh_column_kind sh_column_kinds[SH_COLUMN_KINDS] = {
     [SH_COLUMN_POWER] = {PRIOR(tau_e), ONE, 0, POWER | SH_IS_EQUATION},
-    [SH_COLUMN_NOMINAL] = {PRIOR(nominal), ONE, 0, CURVE | SH_IS_EQUATION},
-    [SH_COLUMN_BIAS] = {PRIOR(bias), TAU_E, 0, SH_IS_FILTERED},
-    [SH_COLUMN_DAMPING] = {PRIOR(damping), K_0, 0, 0},
-    [SH_COLUMN_SIN_Q] = {PRIOR(eccentric), K_0, 0, SH_IS_FILTERED},
-    [SH_COLUMN_COS_Q] = {PRIOR(eccentric), K_0, 0, SH_IS_FILTERED},
-    [SH_COLUMN_DELAY] = {PRIOR(delay), ONE, 0, 0},
-    [SH_COLUMN_REVERSAL] = {PRIOR(reversal), TAU_C, 0, SH_IS_MOTOR},
+    [SH_COLUMN_NOMINAL] = {PRIOR(nominal), IF_CURVE, 0, SH_IS_CURVE | SH_IS_EQUATION},
     [SH_COLUMN_HIGHER_POWER] = {PRIOR(power), TAU_E, 1, POWER},
     [SH_COLUMN_SET_POWER] = {PRIOR(power), TAU_E, 2, POWER},
-    [SH_COLUMN_DEAD_ZONE] = {PRIOR(gap), TAU_E, 6, SH_IS_SPRING | SH_IS_FILTERED},
-    [SH_COLUMN_HYSTERESIS] = {PRIOR(hysteresis), TAU_E, 4, SH_IS_FILTERED},
-    [SH_COLUMN_KNEE] = {PRIOR(power), TAU_E, 0, FILTERED_CURVE},
-    [SH_COLUMN_POSSIBLE_KNEE] = {PRIOR(power), TAU_E, 3, FILTERED_CURVE},
-    [SH_COLUMN_SIN_M] = {PRIOR(eccentric_motor), ONE, 5, SH_IS_MOTOR},
-    [SH_COLUMN_COS_M] = {PRIOR(eccentric_motor), ONE, 5, SH_IS_MOTOR},
-    [SH_COLUMN_LOAD] = {PRIOR(load_friction), ONE, 0, SH_IS_MOTOR},
-    [SH_COLUMN_DRIVE] = {PRIOR(load_friction), ONE, 0, SH_IS_MOTOR},
-    [SH_COLUMN_VISCOUS] = {PRIOR(D_theta), ONE, 0, MOTOR},
-    [SH_COLUMN_COULOMB] = {PRIOR(tau_coulomb), ONE, 0, MOTOR},
-    [SH_COLUMN_INERTIA] = {PRIOR(B), ONE, 0, MOTOR},
+    [SH_COLUMN_DEAD_ZONE] = {PRIOR(gap), TAU_E, 6, 0},
+    [SH_COLUMN_KNEE] = {PRIOR(power), TAU_E, 0, SH_IS_CURVE},
+    [SH_COLUMN_POSSIBLE_KNEE] = {PRIOR(power), TAU_E, 3, SH_IS_CURVE},
+    [SH_COLUMN_BIAS] = {PRIOR(bias), TAU_E, 0, 0},
+    [SH_COLUMN_SIN_Q] = {PRIOR(eccentric), K_0, 0, 0},
+    [SH_COLUMN_COS_Q] = {PRIOR(eccentric), K_0, 0, 0},
+    [SH_COLUMN_HYSTERESIS] = {PRIOR(hysteresis), TAU_E, 4, 0},
+    [SH_COLUMN_DAMPING] = {PRIOR(damping), K_0, 0, 0},
+    [SH_COLUMN_DELAY] = {PRIOR(delay), ONE, 0, 0},
+    [SH_COLUMN_REVERSAL] = {PRIOR(reversal), TAU_C, 0, 0},
+    [SH_COLUMN_SIN_M] = {PRIOR(eccentric_motor), ONE, 5, 0},
+    [SH_COLUMN_COS_M] = {PRIOR(eccentric_motor), ONE, 5, 0},
+    [SH_COLUMN_LOAD] = {PRIOR(load_friction), ONE, 0, 0},
+    [SH_COLUMN_DRIVE] = {PRIOR(load_friction), IF_DRY, 0, 0},
+    [SH_COLUMN_VISCOUS] = {PRIOR(D_theta), ONE, 0, SH_IS_EQUATION},
+    [SH_COLUMN_COULOMB] = {PRIOR(tau_coulomb), ONE, 0, SH_IS_EQUATION},
+    [SH_COLUMN_INERTIA] = {PRIOR(B), ONE, 0, SH_IS_EQUATION},
 };
 
 /* Half width of a dead zone or an element of hysteresis, or place of a knee, over range.phi [1]; else 0. If the
@@ -114,11 +114,24 @@ static int is_knee(const sh_column *column)
     return column->kind == SH_COLUMN_KNEE || column->kind == SH_COLUMN_POSSIBLE_KNEE;
 }
 
-int sh_column_is_distinct(const sh_column *column, const sh_parameters *p, sh_real phi_min,
-                          sh_real phi_max)
+int sh_columns_place(const sh_columns *columns, int kind)
 {
-    return is_knee(column) ||
-           column->place <= SH_LOOKS_LIKE_SPRING * (phi_max - phi_min) / p->range.phi;
+    int i;
+
+    for (i = 0; i < columns->size; ++i) {
+        if (columns->column[i].kind == kind) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+int sh_column_is_distinct(const sh_regression_state *state, const sh_parameters *p, int i)
+{
+    const sh_column *column = &state->columns.column[i];
+    const sh_real covered = state->history.phi_max - state->history.phi_min;
+
+    return is_knee(column) || column->place <= SH_LOOKS_LIKE_SPRING * covered / p->range.phi;
 }
 
 /* ---- which columns there are ------------------------------------------------------------- */
@@ -151,26 +164,27 @@ typedef struct {
 
 static void add(column_list *list, const sh_parameters *p, int kind, int i, int j)
 {
-    const sh_real units[] = {1, p->prior.tau_e, p->prior.tau_e / p->range.phi,
-                             p->prior.tau_coulomb};
-    sh_column column = {(short)kind, (short)i, (short)j, 0, 0, 0};
-    const void *prior = (const char *)p + sh_column_kinds[kind].prior;
+    const sh_real units[] = {1,
+                             p->prior.tau_e,
+                             p->prior.tau_e / p->range.phi,
+                             p->prior.tau_coulomb,
+                             p->prior.tau_coulomb > 0 ? 1 : 0,
+                             (sh_real)sh_has_nominal_curve(p)};
+    const void *in_unit = (const char *)p + sh_column_kinds[kind].prior;
+    const sh_real prior = *(const sh_real *)in_unit * units[sh_column_kinds[kind].unit];
 
-    column.prior = *(const sh_real *)prior * units[sh_column_kinds[kind].unit];
-    if (!(column.prior > 0)) {
+    if (!(prior > 0)) {
         return;
     }
-    if (sh_column_is(&column, SH_IS_POWER)) {
-        column.unit = unit_of_power(p, i, j);
-    }
     if (list->column != NULL) {
-        /* Not the whole struct: its padding would bring bytes of the stack into a saved state. */
-        list->column[list->size].kind = column.kind;
-        list->column[list->size].i = column.i;
-        list->column[list->size].j = column.j;
-        list->column[list->size].prior = column.prior;
-        list->column[list->size].unit = column.unit;
-        list->column[list->size].place = width_or_place(&column, p);
+        sh_column *column = &list->column[list->size];
+
+        column->kind = (short)kind;
+        column->i = (short)i;
+        column->j = (short)j;
+        column->prior = prior;
+        column->unit = sh_column_is(column, SH_IS_POWER) ? unit_of_power(p, i, j) : 0;
+        column->place = width_or_place(column, p);
     }
     list->size += 1;
 }
@@ -190,9 +204,7 @@ static void list_columns(const sh_parameters *p, column_list *list)
             add(list, p, SH_COLUMN_POWER, i, j);
         }
     }
-    if (sh_has_nominal_curve(p)) {
-        add(list, p, SH_COLUMN_NOMINAL, 0, 0);
-    }
+    add(list, p, SH_COLUMN_NOMINAL, 0, 0);
     /*@ loop unroll 2; */
     for (i = 0; i < 2 && n + i < SH_MAX_N; ++i) {
         add(list, p, SH_COLUMN_HIGHER_POWER, n + i, 0);
@@ -223,17 +235,10 @@ static void list_columns(const sh_parameters *p, column_list *list)
     if (m > 1) {
         add(list, p, SH_COLUMN_DAMPING, 0, m - 1);
     }
-    add(list, p, SH_COLUMN_DELAY, 0, 0);
-    add(list, p, SH_COLUMN_REVERSAL, 0, 0);
-    add(list, p, SH_COLUMN_SIN_M, 0, 0);
-    add(list, p, SH_COLUMN_COS_M, 0, 0);
-    add(list, p, SH_COLUMN_LOAD, 0, 0);
-    if (p->prior.tau_coulomb > 0) { /* else the motor has no dry friction */
-        add(list, p, SH_COLUMN_DRIVE, 0, 0);
+    /*@ loop unroll SH_COLUMN_KINDS; */
+    for (i = SH_COLUMN_DELAY; i <= SH_COLUMN_INERTIA; ++i) {
+        add(list, p, i, 0, 0);
     }
-    add(list, p, SH_COLUMN_VISCOUS, 0, 0);
-    add(list, p, SH_COLUMN_COULOMB, 0, 0);
-    add(list, p, SH_COLUMN_INERTIA, 0, 0);
 }
 
 int sh_columns_count(const sh_parameters *p)
@@ -256,13 +261,13 @@ void sh_columns_start(sh_columns *columns, const sh_parameters *p)
     columns->friction = columns->inertia = 0;
     /*@ loop unroll SH_MAX_COLUMNS; */
     for (i = 0; i < columns->size; ++i) {
-        const sh_column *column = &columns->column[i];
+        const int kind = columns->column[i].kind;
 
-        columns->spring += sh_column_is(column, SH_IS_SPRING);
-        columns->filtered += sh_column_is(column, SH_IS_SPRING | SH_IS_FILTERED);
-        columns->friction += column->kind < SH_COLUMN_LOAD;
-        columns->inertia += column->kind < SH_COLUMN_INERTIA;
-        columns->knees += sh_column_is(column, SH_IS_SPRING) && column->kind < SH_COLUMN_DEAD_ZONE;
+        columns->knees += kind < SH_COLUMN_DEAD_ZONE;
+        columns->spring += kind < SH_COLUMN_BIAS;
+        columns->filtered += kind < SH_COLUMN_DAMPING;
+        columns->friction += kind < SH_COLUMN_LOAD;
+        columns->inertia += kind < SH_COLUMN_INERTIA;
     }
 }
 
@@ -443,55 +448,41 @@ void sh_columns_move_stops(sh_real *stop, const sh_parameters *p, sh_real change
     }
 }
 
-sh_real sh_columns_torque(const sh_columns *columns, const sh_joint_point *at, const sh_real *beta)
-{
-    return at->tau_nominal + sh_sum_of_products(at->F, beta, columns->spring);
-}
-
 /* ---- the row ----------------------------------------------------------------------------- */
 
 /* H x + T^2/12 s^2 H x of a signal that is not smooth, detail 2. */
-static sh_real as_if_smooth(const sh_state_variable_filter *filter, const sh_filter_design *design)
+static sh_real as_if_smooth(const sh_parameters *p, const sh_filtered *f, int i)
 {
-    return sh_state_variable_filter_output(filter) +
-           design->T * design->T / 12 * sh_state_variable_filter_second(filter, design);
+    return f->output[i] + p->samplePeriod * p->samplePeriod / 12 * f->second[i];
 }
 
 /* Filtered torque in y: -gamma tau_f, or the measured torque of the spring [N.m]. */
-static sh_real torque_in_y(const sh_parameters *p, const sh_filter_design *design,
-                           const sh_state_variable_filter *filter)
+static sh_real torque_in_y(const sh_parameters *p, const sh_filtered *f)
 {
-    const sh_state_variable_filter *tau = &filter[SH_FILTER_TORQUE];
-
-    return sh_is_measured(p) ? sh_state_variable_filter_output(tau)
-                             : -p->motor.gamma * as_if_smooth(tau, design);
+    return sh_is_measured(p) ? f->output[SH_FILTER_TORQUE]
+                             : -p->motor.gamma * as_if_smooth(p, f, SH_FILTER_TORQUE);
 }
 
-/* gamma^2 (B theta'' + D_theta theta') of a filtered position */
-static sh_real motor_torque(const sh_parameters *p, const sh_filter_design *design,
-                            const sh_state_variable_filter *theta)
+/* gamma^2 (B theta'' + D_theta theta') of a filtered position i */
+static sh_real motor_torque(const sh_parameters *p, const sh_filtered *f, int i)
 {
     return p->motor.gamma * p->motor.gamma *
-           (p->motor.B * sh_state_variable_filter_second(theta, design) +
-            p->motor.D_theta * sh_state_variable_filter_first(theta, design));
+           (p->motor.B * f->second[i] + p->motor.D_theta * f->first[i]);
 }
 
 /* y = gamma^2 B theta''_f + gamma^2 D_theta theta'_f - gamma tau_f, or the torque of the spring */
-sh_real sh_columns_y(const sh_parameters *p, const sh_filter_design *design,
-                     const sh_state_variable_filter *filter)
+sh_real sh_columns_y(const sh_parameters *p, const sh_filtered *f)
 {
-    return torque_in_y(p, design, filter) +
-           (sh_is_measured(p) ? 0 : motor_torque(p, design, &filter[SH_FILTER_THETA]));
+    return torque_in_y(p, f) + (sh_is_measured(p) ? 0 : motor_torque(p, f, SH_FILTER_THETA));
 }
 
-/* sigma S + gamma^2 (D_theta S' + B S''): the error of y by the error S of theta; 0 while sigma is not
- * known, detail 13.
+/* sigma S + gamma^2 (D_theta S' + B S''): the error of y by the error S of theta, which is signal i; 0 while sigma is
+ * not known, detail 13.
  */
-static sh_real encoder_error(const sh_regression_state *state, const sh_parameters *p,
-                             const sh_state_variable_filter *S)
+static sh_real encoder_error(const sh_regression_state *state, const sh_parameters *p, int i)
 {
-    const sh_real error = state->sigma * sh_state_variable_filter_output(S) +
-                          motor_torque(p, &state->signals.design, S);
+    const sh_filtered *f = &state->mean.filtered;
+    const sh_real error = state->sigma * f->output[i] + motor_torque(p, f, i);
 
     return state->stiffness_known ? sh_limited(error, SH_LARGEST_ENCODER_ERROR) : 0;
 }
@@ -500,38 +491,31 @@ static sh_real encoder_error(const sh_regression_state *state, const sh_paramete
 static sh_real entry_of(const sh_regression_state *state, const sh_parameters *p,
                         const sh_column *column)
 {
-    const sh_filter_design *design = &state->signals.design;
-    const sh_state_variable_filter *filter = state->mean.filter;
-    const sh_state_variable_filter *theta = &filter[SH_FILTER_THETA],
-                                   *tau = &filter[SH_FILTER_TORQUE];
-    const sh_state_variable_filter *sign = &filter[SH_FILTER_SIGN];
+    const sh_filtered *f = &state->mean.filtered;
     const sh_real gamma = p->motor.gamma, gain = sh_is_measured(p) ? 1 : -gamma;
 
     switch (column->kind) {
-    case SH_COLUMN_NOMINAL:
-        return sh_state_variable_filter_output(&filter[SH_FILTER_NOMINAL]);
     case SH_COLUMN_DAMPING: /* (phi l^j)': as the stiffness, the damping may depend on the set-point */
-        return sh_state_variable_filter_first(
-            &filter[column->j > 0 ? SH_FILTER_PHI_SET : SH_FILTER_PHI], design);
+        return f->first[column->j > 0 ? SH_FILTER_PHI_SET : SH_FILTER_PHI];
     case SH_COLUMN_LOAD: /* -|tau_e| s through the filter */
-        return as_if_smooth(&filter[SH_FILTER_LOAD], design);
+        return as_if_smooth(p, f, SH_FILTER_LOAD);
     case SH_COLUMN_DRIVE: /* -|gamma tau_f| s_f */
-        return -sh_fabs(torque_in_y(p, design, filter)) * as_if_smooth(sign, design);
+        return -sh_fabs(torque_in_y(p, f)) * as_if_smooth(p, f, SH_FILTER_SIGN);
     case SH_COLUMN_DELAY: /* gamma (tau' + delay tau''/2) */
-        return -gain * (sh_state_variable_filter_first(tau, design) +
-                        state->delay / 2 * sh_state_variable_filter_second(tau, design));
+        return -gain *
+               (f->first[SH_FILTER_TORQUE] + state->delay / 2 * f->second[SH_FILTER_TORQUE]);
     case SH_COLUMN_REVERSAL: /* |gamma| s'_f */
-        return sh_fabs(gamma) * sh_state_variable_filter_first(sign, design);
+        return sh_fabs(gamma) * f->first[SH_FILTER_SIGN];
     case SH_COLUMN_SIN_M:
-        return encoder_error(state, p, &filter[SH_FILTER_SIN_M]);
+        return encoder_error(state, p, SH_FILTER_SIN_M);
     case SH_COLUMN_COS_M:
-        return encoder_error(state, p, &filter[SH_FILTER_COS_M]);
+        return encoder_error(state, p, SH_FILTER_COS_M);
     case SH_COLUMN_VISCOUS: /* -gamma^2 D_theta theta'_f */
-        return -gamma * gamma * p->motor.D_theta * sh_state_variable_filter_first(theta, design);
+        return -gamma * gamma * p->motor.D_theta * f->first[SH_FILTER_THETA];
     case SH_COLUMN_COULOMB: /* -|gamma| s_f */
-        return -sh_fabs(gamma) * as_if_smooth(sign, design);
+        return -sh_fabs(gamma) * as_if_smooth(p, f, SH_FILTER_SIGN);
     case SH_COLUMN_INERTIA: /* -gamma^2 B theta''_f */
-        return -gamma * gamma * p->motor.B * sh_state_variable_filter_second(theta, design);
+        return -gamma * gamma * p->motor.B * f->second[SH_FILTER_THETA];
     default:
         return 0;
     }
@@ -539,28 +523,21 @@ static sh_real entry_of(const sh_regression_state *state, const sh_parameters *p
 
 void sh_columns_row(const sh_regression_state *state, const sh_parameters *p, sh_real *x)
 {
-    const sh_filter_design *design = &state->signals.design;
-    const sh_state_variable_filter *filter = state->mean.filter;
-    const sh_real share = 1 / (sh_real)state->signals.decimation;
-    const int size = state->columns.size;
+    const sh_filtered *f = &state->mean.filtered;
+    const int size = state->columns.size, filtered = state->columns.filtered;
     int i;
 
-    for (i = 0; i < size; ++i) {
+    for (i = 0; i < filtered; ++i) {
+        x[i] = state->mean.output[i];
+    }
+    for (; i < size; ++i) {
         const sh_column *column = &state->columns.column[i];
+        const int is_motor = column->kind >= SH_COLUMN_REVERSAL;
 
-        if (sh_column_is(column, SH_IS_FILTERED)) {
-            x[i] = share * state->mean.output[i];
-        } else if (sh_is_measured(p) && sh_column_is(column, SH_IS_MOTOR)) {
-            x[i] = 0;
-        } else {
-            x[i] = column->prior * entry_of(state, p, column);
-        }
+        x[i] = sh_is_measured(p) && is_motor ? 0 : column->prior * entry_of(state, p, column);
     }
-    x[size + SH_RIGHT_GAIN] = torque_in_y(p, design, filter);
-    x[size + SH_RIGHT_Y] = sh_columns_y(p, design, filter);
-    if (state->columns.has_nominal) {
-        x[size + SH_RIGHT_Y] -= sh_state_variable_filter_output(&filter[SH_FILTER_NOMINAL]);
-    }
+    x[size + SH_RIGHT_GAIN] = torque_in_y(p, f);
+    x[size + SH_RIGHT_Y] = sh_columns_y(p, f) - f->output[SH_FILTER_NOMINAL];
 }
 
 /* nu = lambda epsilon / (1 - lambda c s'), s' = slope: noise of the torque. It is taken out of the column, and
@@ -570,24 +547,20 @@ void sh_columns_row(const sh_regression_state *state, const sh_parameters *p, sh
 sh_real sh_columns_remove_noise(const sh_regression_state *state, const sh_row_noise *noise,
                                 sh_real epsilon, sh_real *x, sh_column_noise *left)
 {
-    const int size = state->columns.size;
-    const sh_real torque = x[size + SH_RIGHT_GAIN];
-    sh_real change = 0;
-    int i;
+    const int i = sh_columns_place(&state->columns, SH_COLUMN_DRIVE);
+    const sh_real torque = x[state->columns.size + SH_RIGHT_GAIN];
+    sh_real slope, c, nu, change;
 
     left->information = left->gain = 0;
-    for (i = 0; i < size && sh_square(torque) > 0; ++i) {
-        if (state->columns.column[i].kind == SH_COLUMN_DRIVE) {
-            const sh_real slope = x[i] / torque;
-            const sh_real c = sh_limited(slope * state->beta[i], SH_LARGEST_RETURN);
-            const sh_real nu = noise->share * epsilon / (1 - noise->share * c);
-            const sh_real entry = x[i] * sh_fabs(1 - nu / torque);
-
-            left->gain = (1 - noise->share) * noise->torque * slope;
-            left->information = left->gain * slope;
-            change = (entry - x[i]) * state->beta[i];
-            x[i] = entry;
-        }
+    if (i < 0 || !(sh_square(torque) > 0)) {
+        return 0;
     }
-    return change;
+    slope = x[i] / torque;
+    c = sh_limited(slope * state->beta[i], SH_LARGEST_RETURN);
+    nu = noise->share * epsilon / (1 - noise->share * c);
+    left->gain = (1 - noise->share) * noise->torque * slope;
+    left->information = left->gain * slope;
+    change = x[i] * (sh_fabs(1 - nu / torque) - 1);
+    x[i] += change;
+    return change * state->beta[i];
 }

@@ -140,14 +140,9 @@ static void read_coefficients(const sh_regression_state *state, const sh_paramet
     }
 }
 
-/* Whether few blocks have a misfit, so that the columns that may explain it have not all been tried. */
-static int is_unexplained(const sh_regression_state *state, const sh_parameters *p)
-{
-    return p->regression.memory > 0 && state->blocks.count < SH_UNTRIED_BLOCKS &&
-           state->misfit > SH_UNEXPLAINED;
-}
-
-/* Why the estimate is not confident. The misfit widens sigma_std, so it has a limit of its own for few blocks only. */
+/* Why the estimate is not confident. The misfit widens sigma_std, so it has a limit of its own for few blocks only: then
+ * the columns that may explain it have not all been tried.
+ */
 static int doubt_of(const sh_regression_state *state, const sh_parameters *p,
                     const sh_estimate *estimate)
 {
@@ -157,7 +152,8 @@ static int doubt_of(const sh_regression_state *state, const sh_parameters *p,
     if (!(estimate->sigma_std < p->limit.relative_std * sh_fabs(estimate->sigma))) {
         doubt = state->variance_factor > SH_CONTRADICTION ? SH_DOUBT_MISFIT : SH_DOUBT_NOT_EXCITED;
     }
-    if (is_unexplained(state, p)) {
+    if (p->regression.memory > 0 && state->blocks.count < SH_UNTRIED_BLOCKS &&
+        state->misfit > SH_UNEXPLAINED) {
         doubt = SH_DOUBT_MISFIT;
     }
     if (phi > SH_LEAST_LIMIT * p->range.phi && phi > largest_deformation_filtered_regression(p)) {
@@ -210,7 +206,6 @@ static void report_coefficients(sh_regression_state *state, const sh_parameters 
 static int report(sh_regression_state *state, const sh_parameters *p, sh_joint_point *at, sh_real y,
                   int settled, int news, sh_estimate *estimate)
 {
-    const sh_signals *signals = &state->signals;
     const sh_real knees = sh_columns_judge_knees(&state->columns, p, state->beta, at);
     sh_point point;
     sh_real per_gain;
@@ -232,8 +227,7 @@ static int report(sh_regression_state *state, const sh_parameters *p, sh_joint_p
                                    : 0;
     estimate->tau_e_residual = y;
     estimate->phi = at->phi;
-    estimate->theta_dot =
-        sh_state_variable_filter_first(&signals->filter[SH_FILTER_THETA], &signals->design);
+    estimate->theta_dot = at->filtered.first[SH_FILTER_THETA];
     estimate->a = settled ? 1 : 0;
     estimate->rho = state->row.rho;
     estimate->epsilon = state->row.epsilon;
@@ -288,50 +282,44 @@ static int are_acceptable(const sh_joint_point *at, sh_real y, const sh_columns 
            sh_square(y) <= SH_LARGE;
 }
 
-/* Adds the states of the filters to those of the samples before. Returns 1 if a row is complete: then the mean
- * of the states makes it (detail 16).
- */
-static int take_sample(sh_regression_state *state, const sh_parameters *p)
+/* Adds a share of the signals behind the filters. */
+static void add_signals(sh_mean *mean, const sh_filters *filters, const sh_filtered *now,
+                        int columns, sh_real share)
+{
+    int i;
+
+    for (i = 0; i < SH_FILTERS; ++i) {
+        mean->filtered.output[i] += share * now->output[i];
+        mean->filtered.first[i] += share * now->first[i];
+        mean->filtered.second[i] += share * now->second[i];
+    }
+    for (i = 0; i < columns; ++i) {
+        mean->output[i] +=
+            share * (filters->input[SH_FILTERS + i] - filters->behind[2][SH_FILTERS + i]);
+    }
+}
+
+/* Adds a sample to those before. Returns 1 if a row is complete: then their mean makes it (detail 16). */
+static int take_sample(sh_regression_state *state, const sh_parameters *p, const sh_filtered *now)
 {
     sh_signals *signals = &state->signals;
-    const sh_real share = 1 / (sh_real)signals->decimation, rough = sh_signals_roughness(signals);
+    const sh_real share = 1 / (sh_real)signals->decimation, rough = sh_noise_of_theta(state, p);
     sh_mean *mean = &state->mean;
     sh_row *row = &state->row;
 
-    sh_noise_watch(&state->history, signals, p, rough);
-    sh_state_variable_filter_add(mean->filter, signals->filter, SH_FILTERS, share);
+    add_signals(mean, &signals->filters, now, state->columns.filtered, share);
     mean->rough += rough * share;
     mean->moved += sh_fabs(signals->theta_before[0] - signals->theta_before[1]) > 0 ? share : 0;
     mean->samples += 1;
     if (mean->samples < signals->decimation) {
         return 0;
     }
-    sh_column_filters_rest(&signals->columns, state->columns.filtered);
+    sh_filters_rest(&signals->filters, SH_FILTERS + state->columns.filtered);
     sh_columns_row(state, p, row->x);
     row->rough = mean->rough;
     row->moved = mean->moved;
     (void)memset(mean, 0, sizeof *mean);
     return 1;
-}
-
-/* Weight 1 / R of the row x [size: count]; 0 if the numbers are too large. */
-static sh_real weight_of(const sh_row_noise *noise, const sh_real *x, int count)
-{
-    const sh_real w = 1 / noise->R;
-
-    return w > 0 && w * sh_sum_of_products(x, x, count) <= SH_LARGE ? w : 0;
-}
-
-/* epsilon = y - x' beta. Its share that is noise of the torque is removed from the column of the
- * motor's torque, which contains this noise too; then epsilon is computed again (detail 14).
- */
-static sh_real predict(const sh_regression_state *state, const sh_row_noise *noise, sh_real *x,
-                       sh_column_noise *left)
-{
-    const int size = state->columns.size;
-    const sh_real epsilon = x[size + SH_RIGHT_Y] - sh_sum_of_products(x, state->beta, size);
-
-    return epsilon - sh_columns_remove_noise(state, noise, epsilon, x, left);
 }
 
 /* Updates what is noise in columns: of b (detail 7), of the torque (14), and of the spring (point 5). */
@@ -361,27 +349,25 @@ static void update_noise(sh_regression_state *state, const sh_parameters *p,
 /* Takes a complete row, steps 3 to 5 of the tick. Returns 0 if its numbers are too large. */
 static int use_row(sh_regression_state *state, const sh_parameters *p, const sh_row_noise *noise)
 {
-    const int size = state->columns.size;
+    const int size = state->columns.size, count = size + SH_RIGHT_SIDES;
     sh_row *row = &state->row;
     sh_column_noise left;
     sh_real share; /* 1 / (1 + rho) */
 
-    row->w = weight_of(noise, row->x, size + SH_RIGHT_SIDES); /* 3. Weigh it. */
+    row->w = 1 / noise->R; /* 3. Weigh it. */
     row->lasting = noise->lasting;
-    if (!(row->w > 0)) {
+    if (!(row->w > 0 && row->w * sh_sum_of_products(row->x, row->x, count) <= SH_LARGE)) {
+        row->w = 0;
         return 0;
     }
-    row->epsilon = predict(state, noise, row->x, &left); /* 4. Predict and compare. */
+    row->epsilon = row->x[size + SH_RIGHT_Y] - sh_sum_of_products(row->x, state->beta, size);
+    /* 4. Predict and compare. */
+    row->epsilon -= sh_columns_remove_noise(state, noise, row->epsilon, row->x, &left);
     share = sh_posterior_take(&state->posterior, row->x, size, row->w); /* 5. Update. */
     row->rho = share > 0 ? sh_limited((1 - share) / share, SH_LARGEST_OUTPUT) : SH_LARGEST_OUTPUT;
     update_noise(state, p, &left, row->w);
     row->tick = 0;
     return 1;
-}
-
-static int is_block_full(const sh_blocks *blocks)
-{
-    return blocks->rows >= blocks->length;
 }
 
 /* Steps that a refit makes in a step of the row. */
@@ -402,7 +388,7 @@ static int steps_of_refit(const sh_signals *signals)
  */
 static int advance_block(sh_regression_state *state, const sh_parameters *p, int step)
 {
-    const int was_full = is_block_full(&state->blocks), steps = steps_of_refit(&state->signals);
+    const int was_full = sh_block_is_full(&state->blocks), steps = steps_of_refit(&state->signals);
     int news = 0, i;
 
     if (step == 0) {
@@ -410,7 +396,7 @@ static int advance_block(sh_regression_state *state, const sh_parameters *p, int
         sh_blocks_take(state);
     }
     sh_blocks_end(state, p, step);
-    if (was_full || is_block_full(&state->blocks) || sh_change_widens_friction(state, step)) {
+    if (was_full || sh_block_is_full(&state->blocks) || sh_change_widens_friction(state, step)) {
         return 0;
     }
     for (i = 0; i < steps; ++i) {
@@ -425,8 +411,7 @@ static int advance_block(sh_regression_state *state, const sh_parameters *p, int
 static int take_step(sh_regression_state *state, const sh_parameters *p, int step)
 {
     if (step == 0) {
-        sh_posterior_estimate(&state->posterior, p->prior.B, state->beta, state->per_gain,
-                              state->columns.size);
+        sh_posterior_estimate(state, p->prior.B);
         return SH_NEW_COEFFICIENTS;
     }
     if (step == 1) {
@@ -471,23 +456,15 @@ static int take_steps(sh_regression_state *state, const sh_parameters *p)
 static void wait_until_settled(sh_regression_state *state)
 {
     sh_signals_unsettle(&state->signals, &state->history);
-    if (!is_block_full(&state->blocks)) { /* else it will be taken and emptied */
+    if (!sh_block_is_full(&state->blocks)) { /* else it will be taken and emptied */
         sh_blocks_interrupt(&state->blocks);
     }
-}
-
-/* After a gap, or a change of the modality, the filters start again. */
-static void resume(sh_regression_state *state)
-{
-    state->signals.begun = 0;
-    wait_until_settled(state);
 }
 
 /* Forgets what the last row depended on: the next one must not be as large because of it. Returns 0. */
 static int refuse(sh_regression_state *state, const sh_history *before)
 {
     state->signals.begun = 0; /* the filters start again, so their old state does not matter */
-    (void)memset(&state->mean, 0, sizeof state->mean);
     state->history = *before;
     state->sigma = state->delay = state->y = 0;
     state->stiffness_known = 0;
@@ -505,19 +482,20 @@ static int tick_filtered_regression(sh_estimator *estimator, const sh_parameters
     sh_real y;
 
     if (estimator->started && (estimator->skipped > 0 || state->modality != p->modality)) {
-        resume(state);
+        state->signals.begun = 0; /* the filters start again */
+        wait_until_settled(state);
     }
     if (state->history.change_age >= 0) {
         state->history.change_age += (1 + estimator->skipped) * p->samplePeriod;
     }
     sh_signals_take(state, p, z, set_point, &at); /* 1. Filter the signals. */
-    y = sh_columns_y(p, &state->signals.design, state->signals.filter);
+    y = sh_columns_y(p, &at.filtered);
     if (!are_acceptable(&at, y, &state->columns)) {
         return refuse(state, &before);
     }
     state->history.settling = sh_fmax(state->history.settling - p->samplePeriod, 0);
     settled = !(state->history.settling > 0);
-    complete = settled && take_sample(state, p); /* 2. Build a row of K samples. */
+    complete = settled && take_sample(state, p, &at.filtered); /* 2. Build a row of K samples. */
     if (complete) {
         const sh_row_noise noise = sh_noise_of_row(state, p);
 
@@ -535,7 +513,6 @@ static int tick_filtered_regression(sh_estimator *estimator, const sh_parameters
     }
     if (!settled) {
         state->row.epsilon = state->row.rho = 0;
-        (void)memset(&state->mean, 0, sizeof state->mean); /* the filters add every sample */
     }
     return report(state, p, &at, y, settled, news, estimate) ? 1 : refuse(state, &before); /* 7. */
 }

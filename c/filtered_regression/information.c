@@ -254,28 +254,6 @@ sh_variances sh_information_variances(const sh_information *a, sh_real last_D, s
     return found;
 }
 
-sh_real sh_information_variance(const sh_information *a, sh_real last_D, sh_real *c)
-{
-    const int end = a->size - 1;
-    const sh_real *row = a->U;
-    sh_real found = 0;
-    int i, k;
-
-    for (i = 0; i < end; ++i) {
-        const int count = end - i;
-        const sh_real v = c[i];
-
-        if (sh_fabs(v) > 0) {
-            for (k = 0; k < count; ++k) {
-                c[i + 1 + k] -= v * row[k];
-            }
-            found += v / a->D[i] * v;
-        }
-        row += count + SH_RIGHT_SIDES;
-    }
-    return found + c[end] / last_D * c[end];
-}
-
 sh_real sh_information_squares(const sh_information *a, const sh_real *beta)
 {
     const int size = a->size;
@@ -304,64 +282,42 @@ void sh_information_forget(sh_information *a, sh_real factor, sh_real least)
     a->squares *= factor;
 }
 
-/* row += D along [1, U_i, z_i], of row i of U from its diagonal on. Returns D along^2. */
-static sh_real add_row(sh_real *row, const sh_real *of_U, int count, sh_real D, sh_real along)
-{
-    const sh_real scaled = D * along;
-    int j;
-
-    row[0] += scaled;
-    for (j = 0; j < count; ++j) {
-        row[1 + j] += scaled * of_U[j];
-    }
-    return scaled * along;
-}
-
-/* -c / (1 + c v' A v); 0 if nothing is known along v, or at an overflow */
-static sh_real weight_of_drift(sh_real vAv, sh_real c)
-{
-    const sh_real variance = sh_fmin(c, SH_LARGEST_GROWTH / vAv);
-
-    return vAv > 0 && isfinite(vAv) ? -variance / (1 + variance * vAv) : 0;
-}
-
 /* In terms of the information A = U' D U, the step is A -= A v v' A c / (1 + c v' A v): a sample of
  * negative weight with the regressor v' A.
  */
-sh_real sh_information_drift(sh_information *a, const sh_real *v, sh_real c)
-{
-    const sh_real *of_U = a->U;
-    sh_real row[SH_MAX_ROW] = {0}, vAv = 0, w, share;
-    int i;
-
-    for (i = 0; i < a->size; ++i) { /* row = v' U' D [U, U z] */
-        const int count = a->size - 1 - i;
-        const sh_real along = v[i] + sh_sum_of_products(of_U, v + i + 1, count);
-
-        vAv += add_row(row + i, of_U, count + SH_RIGHT_SIDES, a->D[i], along);
-        of_U += count + SH_RIGHT_SIDES;
-    }
-    w = weight_of_drift(vAv, c);
-    share = 1 + w * sh_sum_of_products(row, v, a->size);
-    (void)sh_information_take(a, row, w);
-    return share;
-}
-
-sh_real sh_information_drift_sample(const sh_information *a, int k, sh_real c, sh_real *row)
+sh_real sh_information_drift_sample(const sh_information *a, const sh_real *v, sh_real c,
+                                    sh_real *row)
 {
     const int size = a->size;
     const sh_real *of_U = a->U;
-    sh_real vAv = 0;
-    int i;
+    sh_real vAv = 0, variance;
+    int i, j;
 
     for (i = 0; i < size + SH_RIGHT_SIDES; ++i) {
         row[i] = 0;
     }
-    for (i = 0; i < size && i <= k; ++i) { /* v is 1 at k alone */
-        const int count = size - 1 - i + SH_RIGHT_SIDES;
+    for (i = 0; i < size; ++i) { /* row = v' U' D [U, U z] */
+        const int count = size - 1 - i;
+        const sh_real along = v[i] + sh_sum_of_products(of_U, v + i + 1, count);
+        const sh_real scaled = a->D[i] * along;
 
-        vAv += add_row(row + i, of_U, count, a->D[i], i < k ? of_U[k - i - 1] : 1);
-        of_U += count;
+        vAv += scaled * along;
+        row[i] += scaled;
+        for (j = 0; j < count + SH_RIGHT_SIDES; ++j) {
+            row[i + 1 + j] += scaled * of_U[j];
+        }
+        of_U += count + SH_RIGHT_SIDES;
     }
-    return weight_of_drift(vAv, c);
+    variance = sh_fmin(c, SH_LARGEST_GROWTH / vAv);
+    return vAv > 0 && isfinite(vAv) ? -variance / (1 + variance * vAv) : 0;
+}
+
+sh_real sh_information_drift(sh_information *a, const sh_real *v, sh_real c)
+{
+    sh_real row[SH_MAX_ROW] = {0};
+    const sh_real w = sh_information_drift_sample(a, v, c, row);
+    const sh_real share = 1 + w * sh_sum_of_products(row, v, a->size);
+
+    (void)sh_information_take(a, row, w);
+    return share;
 }

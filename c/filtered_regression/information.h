@@ -78,9 +78,6 @@ void sh_information_solve(const sh_information *a, const sh_last_row *last, sh_r
 sh_variances sh_information_variances(const sh_information *a, sh_real last_D, sh_real *first,
                                       sh_real *second);
 
-/* Variance of one of them. */
-sh_real sh_information_variance(const sh_information *a, sh_real last_D, sh_real *c);
-
 /* a' b [size: count], in four sums that do not wait for each other. */
 sh_real sh_sum_of_products(const sh_real *a, const sh_real *b, int count);
 
@@ -102,9 +99,10 @@ void sh_information_forget(sh_information *a, sh_real factor, sh_real least);
  */
 sh_real sh_information_drift(sh_information *a, const sh_real *v, sh_real c);
 
-/* The same for parameter k alone, without taking it: sets the row [size: size + SH_RIGHT_SIDES] of a sample. Returns
- * its weight, <= 0, with which sh_information_take lets the parameter change.
+/* The same without taking it: sets the row [size: size + SH_RIGHT_SIDES] of a sample. Returns its weight, <= 0, with
+ * which sh_information_take makes the step; 0 if nothing is known along v, or at an overflow.
  */
-sh_real sh_information_drift_sample(const sh_information *a, int k, sh_real c, sh_real *row);
+sh_real sh_information_drift_sample(const sh_information *a, const sh_real *v, sh_real c,
+                                    sh_real *row);
 
 #endif

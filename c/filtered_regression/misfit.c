@@ -88,15 +88,18 @@ static sh_real take_block(sh_information *a, const sh_real *mean, sh_real w, int
  * does not take its first block: if this is evidence, the spring changes in it, and if not, the hypothesis begins anew
  * behind it.
  */
-static void end_block(sh_regression_state *state, const sh_parameters *p, int step)
+void sh_blocks_end(sh_regression_state *state, const sh_parameters *p, int step)
 {
     sh_blocks *blocks = &state->blocks;
     const int count = state->columns.size + SH_RIGHT_SIDES;
-    const sh_real variance = variance_of(state, p);
     sh_change *change = &state->change;
-    sh_real mean[SH_MAX_ROW] = {0}, w, error;
+    sh_real mean[SH_MAX_ROW] = {0}, variance, w, error;
     int i;
 
+    if (!sh_block_is_full(blocks)) {
+        return;
+    }
+    variance = variance_of(state, p);
     for (i = 0; i < count; ++i) {
         mean[i] = blocks->sum[i] / blocks->weight;
     }
@@ -118,13 +121,6 @@ static void end_block(sh_regression_state *state, const sh_parameters *p, int st
         count_block(state);
         sh_change_judge(state, p, blocks->error, change->error, change->friction_error);
         sh_blocks_interrupt(blocks);
-    }
-}
-
-void sh_blocks_end(sh_regression_state *state, const sh_parameters *p, int step)
-{
-    if (step >= 0 && step <= 3 && state->blocks.rows >= state->blocks.length) {
-        end_block(state, p, step);
     }
 }
 
@@ -238,35 +234,31 @@ static void judge_drift(sh_regression_state *state)
     }
 }
 
-/* Process noise of viscous or Coulomb friction: sets its sample in an even step, and takes it in an odd one. */
-static void let_friction_drift(sh_refit *refit, const sh_columns *columns, sh_information *a,
-                               sh_real variance, int step)
+void sh_drift_step(sh_refit *refit, sh_information *a, int column, sh_real variance, int step)
 {
-    const int kind = step % 4 < 2 ? SH_COLUMN_VISCOUS : SH_COLUMN_COULOMB;
-    int i;
+    if (step % 2 == 0) {
+        sh_real unit[SH_MAX_COLUMNS] = {0};
 
-    if (step % 2 != 0) {
+        unit[column] = 1;
+        refit->w = sh_information_drift_sample(a, unit, variance, refit->x);
+    } else {
         if (refit->w < 0) {
             (void)sh_information_take(a, refit->x, refit->w);
         }
-        return;
-    }
-    refit->w = 0; /* the motor may have no such friction */
-    for (i = 0; i < columns->size; ++i) {
-        if (columns->column[i].kind == kind) {
-            refit->w = sh_information_drift_sample(a, i, variance, refit->x);
-        }
+        refit->w = 0;
     }
 }
 
 void sh_friction_drift(sh_regression_state *state, sh_real time, int step)
 {
+    const int kind = step % 4 < 2 ? SH_COLUMN_VISCOUS : SH_COLUMN_COULOMB;
+    const int column = sh_columns_place(&state->columns, kind);
     const sh_real variance = SH_FRICTION_DRIFT * time;
 
-    if (step < 4) {
-        let_friction_drift(&state->refit, &state->columns, &state->blocks.drifting, variance, step);
-    } else if (state->friction_drifts) {
-        let_friction_drift(&state->refit, &state->columns, &state->data, variance, step);
+    if (column >= 0 && step < 4) {
+        sh_drift_step(&state->refit, &state->blocks.drifting, column, variance, step);
+    } else if (column >= 0 && state->friction_drifts) {
+        sh_drift_step(&state->refit, &state->data, column, variance, step);
     }
     if (step == 3) {
         judge_drift(state);

@@ -9,12 +9,6 @@ static sh_real counts_squared(const sh_signals *signals)
     return sh_square(signals->count) + sh_square(signals->count_q);
 }
 
-/* N_tau = G_0 (gamma s_tau)^2: noise of the torque in the y of a row [(N.m)2] */
-static sh_real torque_noise(const sh_signals *signals, const sh_parameters *p)
-{
-    return signals->gain * sh_square(p->motor.gamma * p->noise.tau);
-}
-
 /* (gamma^2 B)^2 G: noise in the y of a row by noise of theta [(N.m/rad)2] */
 static sh_real inertial_noise(const sh_signals *signals, const sh_parameters *p)
 {
@@ -24,38 +18,32 @@ static sh_real inertial_noise(const sh_signals *signals, const sh_parameters *p)
 /* gamma^2 (tau_C^2 + P_CC) u_f^2: variance of the friction whose sign is unknown [(N.m)2] */
 static sh_real friction_variance(const sh_regression_state *state, const sh_parameters *p)
 {
-    const sh_real u_f = sh_state_variable_filter_output(&state->signals.filter[SH_FILTER_UNKNOWN]);
-    const int size = state->columns.size, C = size - (p->prior.B > 0 ? 2 : 1);
+    const sh_filters *filters = &state->signals.filters;
+    const sh_real u_f = filters->input[SH_FILTER_UNKNOWN] - filters->behind[2][SH_FILTER_UNKNOWN];
+    const int size = state->columns.size, C = sh_columns_place(&state->columns, SH_COLUMN_COULOMB);
     sh_real c[SH_MAX_COLUMNS] = {0}, square; /* of the coefficient of tau_C */
 
-    if (!(p->prior.tau_coulomb > 0) || C < 0 || !(sh_fabs(u_f) > 0)) {
+    if (C < 0 || !(sh_fabs(u_f) > 0)) {
         return 0;
     }
     c[C] = 1;
-    square =
-        sh_square(state->beta[C]) + sh_posterior_variance(&state->posterior, p->prior.B, c, size);
+    square = sh_square(state->beta[C]) +
+             sh_posterior_variances(&state->posterior, p->prior.B, c, c, size).first;
     return sh_square(p->motor.gamma * p->prior.tau_coulomb * u_f) * square;
 }
 
-/* Mean square of the noise of theta over 0.1 s [rad2]; detail 4 */
-void sh_noise_watch(sh_history *history, const sh_signals *signals, const sh_parameters *p,
-                    sh_real rough)
+/* The fourth difference of white noise of variance 1 has the variance 70; detail 4 */
+sh_real sh_noise_of_theta(sh_regression_state *state, const sh_parameters *p)
 {
+    const sh_real *theta = state->signals.theta_before;
+    const sh_real rough =
+        sh_square(theta[0] - 4 * theta[1] + 6 * theta[2] - 4 * theta[3] + theta[4]) / 70;
+    sh_real *mean = &state->history.rough;
+
     if (!sh_is_measured(p)) {
-        history->rough += sh_fmin(signals->design.T / SH_NOISE_TIME, 1) * (rough - history->rough);
+        *mean += sh_fmin(p->samplePeriod / SH_NOISE_TIME, 1) * (rough - *mean);
     }
-}
-
-/* X = (N_tau + N_theta) / (N_tau + (gamma^2 B)^2 G count^2/12) >= 1, where N_theta has the mean square of
- * the noise of theta in place of count^2/12; detail 4. Jitter of the sample times makes X larger.
- */
-static sh_real excess_of_noise(const sh_regression_state *state, const sh_parameters *p)
-{
-    const sh_real torque = torque_noise(&state->signals, p);
-    const sh_real inertial = inertial_noise(&state->signals, p);
-    const sh_real rounded = torque + inertial * sh_square(state->signals.count) / 12;
-
-    return sh_fmax(1, (torque + inertial * state->history.rough) / rounded);
+    return rough;
 }
 
 /* K R = (sigma^2 (count^2 + count_q^2)/12 + (gamma s_tau)^2) (1 + 0.3 (X - 1))
@@ -69,6 +57,10 @@ static sh_real excess_of_noise(const sh_regression_state *state, const sh_parame
  * stays, n samples have the information 1 / (R / n + c), so the n-th one has the variance
  *
  *     R (1 + c n / R)^2 .
+ *
+ * After the filter: N_tau = G_0 (gamma s_tau)^2 by the torque, N_theta by theta, with the noise of rounding at least,
+ * and N_C by friction of unknown sign. X is N_tau + N_theta over what it would be with rounding alone; jitter of the
+ * sample times makes it larger. lambda = N_tau / (N_tau + N_theta + N_C), detail 14.
  */
 sh_row_noise sh_noise_of_row(const sh_regression_state *state, const sh_parameters *p)
 {
@@ -79,20 +71,20 @@ sh_row_noise sh_noise_of_row(const sh_regression_state *state, const sh_paramete
     sh_row_noise noise = {0, 0, 0, 0, 0};
 
     if (!sh_is_measured(p)) {
-        const sh_real theta = sh_fmax(history->rough, sh_square(state->signals.count) / 12);
-        sh_real whole;
+        const sh_real inertial = inertial_noise(&state->signals, p);
+        const sh_real rounded = sh_square(state->signals.count) / 12;
+        const sh_real torque = sh_square(p->motor.gamma * p->noise.tau);
+        sh_real whole, X;
 
         noise.friction = friction_variance(state, p);
-        R = (rounding + sh_square(p->motor.gamma * p->noise.tau)) *
-                (1 + SH_EXCESS * (excess_of_noise(state, p) - 1)) +
+        noise.torque = state->signals.gain * torque;
+        whole = noise.torque + inertial * sh_fmax(history->rough, rounded);
+        X = sh_fmax(1, whole / (noise.torque + inertial * rounded));
+        whole += noise.friction;
+        noise.share = whole > 0 ? noise.torque / whole : 0;
+        R = (rounding + torque) * (1 + SH_EXCESS * (X - 1)) +
             noise.friction / ((sh_real)(3.0 / 16) * design->w * design->T);
         stays += noise.friction * history->unsure;
-        noise.torque = torque_noise(&state->signals, p);
-        /* lambda = N_tau / (N_tau + N_theta + variance of the friction whose sign is unknown), detail 14; N_theta has
-         * at least the noise of rounding.
-         */
-        whole = noise.torque + inertial_noise(&state->signals, p) * theta + noise.friction;
-        noise.share = whole > 0 ? noise.torque / whole : 0;
     }
     noise.lasting = sh_square(1 + stays / R);
     noise.R = R * noise.lasting / (sh_real)state->signals.decimation;
@@ -137,8 +129,8 @@ int sh_noise_contradicts_rest(sh_regression_state *state, const sh_parameters *p
     for (i = 0; i < size; ++i) {
         c[i] = sh_column_is(&state->columns.column[i], SH_IS_EQUATION) ? x[i] : 0;
     }
-    variance = sh_posterior_variance(&state->posterior, p->prior.B, c, size) + noise->torque +
-               inertial_noise(&state->signals, p) * sh_square(state->signals.count) / 12 +
-               noise->friction;
+    variance =
+        sh_posterior_variances(&state->posterior, p->prior.B, c, c, size).first + noise->torque +
+        inertial_noise(&state->signals, p) * sh_square(state->signals.count) / 12 + noise->friction;
     return sh_square(epsilon) > sh_square(SH_AT_REST) * variance;
 }

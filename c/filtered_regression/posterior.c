@@ -75,7 +75,7 @@ void sh_posterior_remove_noise(sh_posterior *posterior, sh_real prior_B, int i,
     sh_real G = noise->gain * posterior->weight, D, N, I, Q, lost, less;
 
     unit[i] = row[i] = 1;
-    D = 1 / sh_information_variance(a, last.D, unit);
+    D = 1 / sh_information_variances(a, last.D, unit, beta).first; /* beta is 0 */
     if (!(all > 0) || !(D > 1) || !(D <= SH_LARGE)) {
         return;
     }
@@ -94,20 +94,20 @@ void sh_posterior_remove_noise(sh_posterior *posterior, sh_real prior_B, int i,
     (void)sh_information_take(&posterior->information, row, -less);
 }
 
-void sh_posterior_estimate(const sh_posterior *posterior, sh_real prior_B, sh_real *beta,
-                           sh_real *per_gain, int size)
+void sh_posterior_estimate(sh_regression_state *state, sh_real prior_B)
 {
+    const sh_posterior *posterior = &state->posterior;
     const sh_last_row last = weighed_last(posterior, prior_B);
     sh_real own_beta[SH_MAX_COLUMNS] = {0}, own_gain[SH_MAX_COLUMNS] = {0};
     int i;
 
     sh_information_solve(&posterior->information, &last, own_beta, own_gain);
-    for (i = 0; i < size; ++i) {
-        beta[i] = per_gain[i] = 0;
+    for (i = 0; i < state->columns.size; ++i) {
+        state->beta[i] = state->per_gain[i] = 0;
     }
     for (i = 0; i < posterior->information.size; ++i) {
-        beta[posterior->column[i]] = own_beta[i];
-        per_gain[posterior->column[i]] = own_gain[i];
+        state->beta[posterior->column[i]] = own_beta[i];
+        state->per_gain[posterior->column[i]] = own_gain[i];
     }
 }
 
@@ -127,19 +127,4 @@ sh_variances sh_posterior_variances(const sh_posterior *posterior, sh_real prior
         }
     }
     return sh_information_variances(&posterior->information, last_D, own_first, own_second);
-}
-
-sh_real sh_posterior_variance(const sh_posterior *posterior, sh_real prior_B, const sh_real *c,
-                              int count)
-{
-    const sh_real last_D = weighed_last(posterior, prior_B).D;
-    sh_real own[SH_MAX_COLUMNS] = {0};
-    int i;
-
-    for (i = 0; i < posterior->information.size; ++i) {
-        const int of_data = posterior->column[i];
-
-        own[i] = of_data < count ? c[of_data] : 0;
-    }
-    return sh_information_variance(&posterior->information, last_D, own);
 }

@@ -9,12 +9,6 @@
 #include "constants.h"
 #include "regression.h"
 
-static int is_distinct(const sh_regression_state *state, const sh_parameters *p, int i)
-{
-    return sh_column_is_distinct(&state->columns.column[i], p, state->history.phi_min,
-                                 state->history.phi_max);
-}
-
 /* Where column i stands; -1 if it is not used. Columns of the spring stand behind others: their variances then
  * need few rows of U. Behind them stand those of the motor, whose information is changed or whose variance is
  * used, and at the end the group that is tried.
@@ -26,13 +20,13 @@ static int place_of(const sh_regression_state *state, const sh_parameters *p, in
     const int group = sh_column_kinds[column->kind].group;
 
     if (group != 0 &&
-        (!is_distinct(state, p, i) || (group != refit->trial && !refit->used[group]))) {
+        (!sh_column_is_distinct(state, p, i) || (group != refit->trial && !refit->used[group]))) {
         return -1;
     }
-    return group != 0 && group == refit->trial  ? 3
-           : column->kind >= SH_COLUMN_DRIVE    ? 2
-           : sh_column_is(column, SH_IS_SPRING) ? 1
-                                                : 0;
+    return group != 0 && group == refit->trial ? 3
+           : column->kind >= SH_COLUMN_DRIVE   ? 2
+           : i < state->columns.spring         ? 1
+                                               : 0;
 }
 
 /* Chooses columns [size: SH_MAX_COLUMNS] for the refit. Returns their number. */
@@ -90,7 +84,7 @@ static int next_trial(sh_regression_state *state, const sh_parameters *p)
         refit->last_trial = refit->last_trial % (SH_GROUPS - 1) + 1;
         for (i = 0; i < state->columns.size; ++i) {
             if (sh_column_kinds[state->columns.column[i].kind].group == refit->last_trial &&
-                is_distinct(state, p, i)) {
+                sh_column_is_distinct(state, p, i)) {
                 return refit->last_trial;
             }
         }
@@ -155,26 +149,15 @@ static void remove_noise(sh_regression_state *state, const sh_parameters *p)
 static void set_friction_std(sh_regression_state *state, const sh_parameters *p)
 {
     const sh_columns *columns = &state->columns;
-    int i;
+    const int i = sh_columns_place(columns, SH_COLUMN_VISCOUS);
 
-    for (i = 0; i < columns->size; ++i) {
-        if (columns->column[i].kind == SH_COLUMN_VISCOUS) {
-            sh_real c[SH_MAX_COLUMNS] = {0};
+    if (i >= 0) {
+        sh_real c[SH_MAX_COLUMNS] = {0};
 
-            c[i] = columns->column[i].prior;
-            state->friction_std = sh_std_deviation(
-                sh_posterior_variance(&state->posterior, p->prior.B, c, columns->size));
-        }
+        c[i] = columns->column[i].prior;
+        state->friction_std = sh_std_deviation(
+            sh_posterior_variances(&state->posterior, p->prior.B, c, c, columns->size).first);
     }
-}
-
-/* The next refit is a trial after every one that changed the estimate. */
-static void plan_refit(sh_regression_state *state, const sh_parameters *p)
-{
-    sh_refit *refit = &state->refit;
-    const int is_due = refit->trial == 0 && state->blocks.count >= SH_FIRST_TRIAL;
-
-    refit->trial = is_due ? next_trial(state, p) : 0;
 }
 
 static void take_row(sh_regression_state *state)
@@ -227,13 +210,6 @@ void sh_refit_take(sh_regression_state *state)
     }
 }
 
-/* Pause before the next refit [s]. Before there are enough blocks, a refit changes little. */
-static sh_real pause_of(const sh_blocks *blocks)
-{
-    return blocks->count < SH_FIRST_TRIAL ? SH_FIRST_PAUSE
-                                          : SH_REFIT_PAUSE * blocks->count * SH_BLOCK;
-}
-
 /* What a refit does behind its rows: step 0..15. Friction drifts, and data are forgotten, before a refit that is no
  * trial. Returns SH_NEW_*.
  */
@@ -250,8 +226,7 @@ static int end_step(sh_regression_state *state, const sh_parameters *p, int step
     } else if (step == 1 && !is_trial) {
         state->posterior = refit->posterior;
     } else if (step == 2 && !is_trial) {
-        sh_posterior_estimate(&state->posterior, p->prior.B, state->beta, state->per_gain,
-                              state->columns.size);
+        sh_posterior_estimate(state, p->prior.B);
         news = SH_NEW_COEFFICIENTS;
     } else if (step == 3 && !is_trial) {
         state->change.following = 0;
@@ -262,7 +237,9 @@ static int end_step(sh_regression_state *state, const sh_parameters *p, int step
         sh_misfit_judge(state, p);
     } else if (step == 6) {
         set_friction_std(state, p);
-        plan_refit(state, p);
+        /* The next refit is a trial after every one that changed the estimate. */
+        refit->trial =
+            !is_trial && state->blocks.count >= SH_FIRST_TRIAL ? next_trial(state, p) : 0;
         refit->pause = 0;
         if (refit->trial != 0) { /* before a trial, nothing else changes */
             refit->step = SH_REFIT_STEPS;
@@ -280,6 +257,10 @@ static int end_step(sh_regression_state *state, const sh_parameters *p, int step
 int sh_refit_advance(sh_regression_state *state, const sh_parameters *p)
 {
     sh_refit *refit = &state->refit;
+    const sh_real count = state->blocks.count;
+    /* Before there are enough blocks, a refit changes little. */
+    const sh_real pause =
+        count < SH_FIRST_TRIAL ? SH_FIRST_PAUSE : SH_REFIT_PAUSE * count * SH_BLOCK;
     int news = 0;
 
     if (refit->unread > 0) {
@@ -290,7 +271,7 @@ int sh_refit_advance(sh_regression_state *state, const sh_parameters *p)
     } else if (refit->step < SH_REFIT_STEPS) {
         refit->step += 1;
         news = end_step(state, p, refit->step - 1);
-    } else if (refit->pause >= pause_of(&state->blocks)) {
+    } else if (refit->pause >= pause) {
         sh_refit_begin(state, p);
     }
     return news;

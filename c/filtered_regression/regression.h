@@ -30,6 +30,7 @@ typedef struct {
     const sh_real *stop;        /* [size: SH_WIDTHS] stop operators of hysteresis [rad] */
     sh_real F[SH_MAX_COLUMNS];  /* signals of the first columns, as far as they have one */
     sh_real dF[SH_MAX_COLUMNS]; /* and their slopes over phi, of the curve of the spring alone */
+    sh_filtered filtered;       /* at a tick: signals behind the filters */
 } sh_joint_point;
 
 /* Variance of a row, whose inverse is its weight. */
@@ -43,22 +44,23 @@ typedef struct {
 
 /* ---- columns.c --------------------------------------------------------------------------- */
 
+/* Kinds of columns, in the order in which a regression has them. */
 enum {
-    SH_COLUMN_POWER,   /* torque of the spring: powers of deformation and set-point */
-    SH_COLUMN_NOMINAL, /* the curve rls.eta_0, whose error as a whole is estimated */
-    SH_COLUMN_BIAS,    /* bias of the torque, zero of the deformation, uneven friction */
-    SH_COLUMN_DAMPING, /* damping of the spring, encoders that are read at different times */
-    SH_COLUMN_SIN_Q,   /* link encoder that is not centred */
-    SH_COLUMN_COS_Q,
-    SH_COLUMN_DELAY,        /* torque that is late or early */
-    SH_COLUMN_REVERSAL,     /* friction that reverses late or early */
-    SH_COLUMN_HIGHER_POWER, /* two more powers of the deformation */
-    SH_COLUMN_SET_POWER,    /* one more power of the set-point */
-    SH_COLUMN_DEAD_ZONE,    /* backlash */
-    SH_COLUMN_HYSTERESIS,
+    SH_COLUMN_POWER,         /* torque of the spring: powers of deformation and set-point */
+    SH_COLUMN_NOMINAL,       /* the curve rls.eta_0, whose error as a whole is estimated */
+    SH_COLUMN_HIGHER_POWER,  /* two more powers of the deformation */
+    SH_COLUMN_SET_POWER,     /* one more power of the set-point */
+    SH_COLUMN_DEAD_ZONE,     /* backlash */
     SH_COLUMN_KNEE,          /* a slope of the curve that changes at once, at a known place */
     SH_COLUMN_POSSIBLE_KNEE, /* the same, if nobody knows of a knee */
-    SH_COLUMN_SIN_M,         /* motor encoder that is not centred */
+    SH_COLUMN_BIAS, /* bias of the torque, zero of the deformation, uneven friction; behind the spring */
+    SH_COLUMN_SIN_Q, /* link encoder that is not centred */
+    SH_COLUMN_COS_Q,
+    SH_COLUMN_HYSTERESIS, /* the last one with a filter of its own */
+    SH_COLUMN_DAMPING,    /* damping of the spring, encoders that are read at different times */
+    SH_COLUMN_DELAY,      /* torque that is late or early; from it on, one of each kind */
+    SH_COLUMN_REVERSAL, /* friction that reverses late or early; from it on, of the motor: 0 where tau_e is measured */
+    SH_COLUMN_SIN_M, /* motor encoder that is not centred */
     SH_COLUMN_COS_M,
     SH_COLUMN_LOAD, /* friction that grows with the torque of the spring */
     SH_COLUMN_DRIVE, /* friction that grows with the torque of the motor; from it on, last in a posterior */
@@ -70,12 +72,9 @@ enum {
 
 /* What a column is. */
 enum {
-    SH_IS_SPRING = 1,   /* a part of the torque of the spring */
-    SH_IS_CURVE = 2,    /* a part of its curve, which may drift */
-    SH_IS_POWER = 4,    /* a power of the deformation: its coefficient is an eta */
-    SH_IS_EQUATION = 8, /* a term of the equation of motion, not an additional effect */
-    SH_IS_MOTOR = 16,   /* 0 where the torque of the spring is measured or modelled */
-    SH_IS_FILTERED = 32 /* its entry is the output of a filter of its own */
+    SH_IS_CURVE = 1,   /* a part of the curve of the spring, which may drift */
+    SH_IS_POWER = 2,   /* a power of the deformation: its coefficient is an eta */
+    SH_IS_EQUATION = 4 /* a term of the equation of motion, not an additional effect */
 };
 
 typedef struct {
@@ -108,9 +107,11 @@ int sh_columns_count(const sh_parameters *p);
 /* The columns for these parameters; there must not be more than SH_MAX_COLUMNS. */
 void sh_columns_start(sh_columns *columns, const sh_parameters *p);
 
-/* Whether the column can be told from the spring after deformations of phi_min..phi_max [rad]. */
-int sh_column_is_distinct(const sh_column *column, const sh_parameters *p, sh_real phi_min,
-                          sh_real phi_max);
+/* Where the first column of a kind is; -1 if there is none. */
+int sh_columns_place(const sh_columns *columns, int kind);
+
+/* Whether column i can be told from the spring after the deformations so far. */
+int sh_column_is_distinct(const sh_regression_state *state, const sh_parameters *p, int i);
 
 /* Sets the point of positions [rad], set-point [1] and hysteresis [size: SH_WIDTHS], which is kept. */
 void sh_joint_point_at(sh_joint_point *point, const sh_columns *columns, const sh_parameters *p,
@@ -126,12 +127,8 @@ sh_real sh_columns_judge_knees(const sh_columns *columns, const sh_parameters *p
 /* Moves the stop operators of hysteresis [size: SH_WIDTHS] by a change of the deformation [rad]. */
 void sh_columns_move_stops(sh_real *stop, const sh_parameters *p, sh_real change);
 
-/* Torque of the spring for coefficients beta [N.m]. */
-sh_real sh_columns_torque(const sh_columns *columns, const sh_joint_point *at, const sh_real *beta);
-
-/* y [N.m] at a state of the filters [size: SH_FILTERS]. */
-sh_real sh_columns_y(const sh_parameters *p, const sh_filter_design *design,
-                     const sh_state_variable_filter *filter);
+/* y [N.m] of filtered signals. */
+sh_real sh_columns_y(const sh_parameters *p, const sh_filtered *f);
 
 /* The row x [size: SH_MAX_ROW] by the mean of the filters: columns, then right-hand sides, of which the last is y
  * less the torque of the nominal curve.
@@ -159,32 +156,20 @@ void sh_motion_sign_step(sh_motion_sign *motion, sh_real position, sh_real count
 
 /* ---- signals.c --------------------------------------------------------------------------- */
 
-/* Corner frequency of the filters [rad/s]: regression.bandwidth, but at most 1.42 W_c of point 1, and at
- * least 1e-4 / samplePeriod.
- */
-sh_real sh_regression_bandwidth(const sh_parameters *p);
-
-/* Number K of samples of a row, detail 16. */
-int sh_regression_decimation(const sh_parameters *p);
-
 /* Designs the filters; they start with the next sample. */
 void sh_signals_start(sh_signals *signals, sh_history *history, const sh_parameters *p);
 
 /* Lets the estimate wait until the filters have settled. */
 void sh_signals_unsettle(sh_signals *signals, sh_history *history);
 
-/* Takes a sample into the history and into all filters. Sets where the joint is. */
+/* Takes a sample into the history and into all filters. Sets where the joint is, also behind the filters. */
 void sh_signals_take(sh_regression_state *state, const sh_parameters *p, const sh_measurement *z,
                      sh_real set_point, sh_joint_point *at);
 
-/* Variance of the noise of theta in the last sample by its fourth difference [rad2]. */
-sh_real sh_signals_roughness(const sh_signals *signals);
-
 /* ---- noise.c ----------------------------------------------------------------------------- */
 
-/* Takes the noise of theta in a sample [rad2] into its mean. */
-void sh_noise_watch(sh_history *history, const sh_signals *signals, const sh_parameters *p,
-                    sh_real rough);
+/* Variance of the noise of theta in the last sample by its fourth difference [rad2], of which it keeps the mean. */
+sh_real sh_noise_of_theta(sh_regression_state *state, const sh_parameters *p);
 
 /* Detail 4: variance of a row, with the noise of theta as the last samples show it. */
 sh_row_noise sh_noise_of_row(const sh_regression_state *state, const sh_parameters *p);
@@ -215,19 +200,12 @@ void sh_posterior_remove(sh_posterior *posterior, sh_real information, sh_real p
 void sh_posterior_remove_noise(sh_posterior *posterior, sh_real prior_B, int i,
                                const sh_column_noise *noise);
 
-/* The estimate beta of all columns, and its change per_gain with the relative gain of the torque [size: size]; 0 for
- * columns that are not used.
- */
-void sh_posterior_estimate(const sh_posterior *posterior, sh_real prior_B, sh_real *beta,
-                           sh_real *per_gain, int size);
+/* Sets beta and per_gain of all columns by the posterior; 0 for columns that are not used. */
+void sh_posterior_estimate(sh_regression_state *state, sh_real prior_B);
 
 /* Variances of two combinations [size: count] of the coefficients of the first columns of the data. */
 sh_variances sh_posterior_variances(const sh_posterior *posterior, sh_real prior_B,
                                     const sh_real *first, const sh_real *second, int count);
-
-/* Variance of one of them. */
-sh_real sh_posterior_variance(const sh_posterior *posterior, sh_real prior_B, const sh_real *c,
-                              int count);
 
 /* ---- misfit.c ---------------------------------------------------------------------------- */
 
@@ -235,6 +213,11 @@ void sh_blocks_start(sh_regression_state *state);
 
 /* Detail 8: takes the last row into the present block. */
 void sh_blocks_take(sh_regression_state *state);
+
+static inline int sh_block_is_full(const sh_blocks *blocks)
+{
+    return blocks->rows >= blocks->length;
+}
 
 /* Step 0..3 of what a full block does, nothing else: one regression a step takes its mean row. */
 void sh_blocks_end(sh_regression_state *state, const sh_parameters *p, int step);
@@ -245,6 +228,9 @@ void sh_blocks_interrupt(sh_blocks *blocks);
 /* Detail 8: judges the recent blocks by the estimate beta; then sets misfit and variance_factor by all blocks. */
 void sh_misfit_judge_recent(sh_regression_state *state, const sh_parameters *p);
 void sh_misfit_judge(sh_regression_state *state, const sh_parameters *p);
+
+/* Process noise of a column: an even step sets its sample, and an odd one takes it, if there is one. */
+void sh_drift_step(sh_refit *refit, sh_information *a, int column, sh_real variance, int step);
 
 /* Step 0..7 of detail 10, of which every second one takes the sample of the one before: lets friction drift for
  * `time` [s], in the data if the blocks contradict each other less with it.

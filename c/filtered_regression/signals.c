@@ -1,13 +1,15 @@
 /* The filters: all signals of the regression pass the same H. */
+#include <string.h>
+
 #include "constants.h"
 #include "method.h"
 #include "regression.h"
 #include "state_variable_filter.h"
 
 /* W_c = sqrt(s_tau / (B |gamma| s_n)), s_n = count / sqrt(12), is where the noise of the torque and the
- * rounding of theta contribute equally to y; point 1.
+ * rounding of theta contribute equally to y; point 1. The filter is designed for w T >= 1e-4 alone.
  */
-sh_real sh_regression_bandwidth(const sh_parameters *p)
+static sh_real bandwidth_of(const sh_parameters *p)
 {
     const sh_real s_n = sh_encoder_count(p->encoder.theta) / sh_sqrt(12);
     const sh_real rounding = p->motor.B * sh_fabs(p->motor.gamma) * s_n;
@@ -21,9 +23,9 @@ sh_real sh_regression_bandwidth(const sh_parameters *p)
 }
 
 /* K = 2.5 / (w T), 1..8: rows of more samples would lose what the filter leaves. */
-int sh_regression_decimation(const sh_parameters *p)
+static int decimation_of(const sh_parameters *p)
 {
-    const sh_real wT = sh_regression_bandwidth(p) * p->samplePeriod;
+    const sh_real wT = bandwidth_of(p) * p->samplePeriod;
     int K = SH_LONGEST_ROW;
 
     if (p->regression.decimation > 0) {
@@ -39,8 +41,8 @@ void sh_signals_start(sh_signals *signals, sh_history *history, const sh_paramet
 {
     signals->count = sh_encoder_count(p->encoder.theta);
     signals->count_q = sh_encoder_count(p->encoder.q);
-    signals->design = sh_state_variable_filter_design(sh_regression_bandwidth(p), p->samplePeriod);
-    signals->decimation = sh_regression_decimation(p);
+    signals->design = sh_state_variable_filter_design(bandwidth_of(p), p->samplePeriod);
+    signals->decimation = decimation_of(p);
     sh_state_variable_filter_noise(&signals->design, 1, signals->decimation, &signals->gain,
                                    &signals->gain_second);
     signals->gain /= (sh_real)signals->decimation; /* of a mean of K samples */
@@ -70,6 +72,36 @@ static void take_deformation(sh_history *history, const sh_signals *signals, con
     history->phi = phi;
 }
 
+/* The friction by load acts against the motion. Before the stiffness is known, the load is the last fitted y
+ * (detail 13).
+ */
+static sh_real load_of(const sh_regression_state *state, const sh_joint_point *at)
+{
+    return state->stiffness_known
+               ? at->tau_nominal + sh_sum_of_products(at->F, state->beta, state->columns.spring)
+               : state->y;
+}
+
+/* Sets the inputs of the filters [size: SH_FILTERS]: at the time of the sample, or the mean since the last one. */
+static void set_inputs(const sh_regression_state *state, const sh_parameters *p,
+                       const sh_joint_point *at, sh_real torque, sh_real *x)
+{
+    const sh_motion_sign *motion = &state->signals.motion;
+    const int turns = p->prior.eccentric_motor > 0;
+    const sh_real turned = p->motor.gamma * at->theta;
+
+    x[SH_FILTER_THETA] = at->theta;
+    x[SH_FILTER_PHI] = at->phi;
+    x[SH_FILTER_PHI_SET] = at->phi_set;
+    x[SH_FILTER_SIN_M] = turns ? sh_sin(turned) : 0;
+    x[SH_FILTER_COS_M] = turns ? sh_cos(turned) : 0;
+    x[SH_FILTER_NOMINAL] = at->tau_nominal;
+    x[SH_FILTER_TORQUE] = torque;
+    x[SH_FILTER_SIGN] = motion->sign;
+    x[SH_FILTER_UNKNOWN] = motion->unknown;
+    x[SH_FILTER_LOAD] = -sh_fabs(load_of(state, at)) * motion->sign;
+}
+
 /* The first sample. The motor is assumed to be at rest, at any torque: theta starts at its value, and
  * the signals of the equation start from zero, because the equation holds from now on (detail 12).
  */
@@ -77,113 +109,60 @@ static void begin_filters(sh_regression_state *state, const sh_parameters *p,
                           const sh_joint_point *at, sh_real torque)
 {
     sh_signals *signals = &state->signals;
-    sh_state_variable_filter *filter = signals->filter;
-    const sh_real turned = p->motor.gamma * at->theta;
+    sh_real x[SH_FILTERS];
     int i;
 
-    sh_state_variable_filter_start(&filter[SH_FILTER_THETA], at->theta, at->theta);
-    sh_state_variable_filter_start(&filter[SH_FILTER_PHI], at->phi, at->phi);
-    sh_state_variable_filter_start(&filter[SH_FILTER_PHI_SET], at->phi_set, at->phi_set);
-    sh_state_variable_filter_start(&filter[SH_FILTER_SIN_M], sh_sin(turned), sh_sin(turned));
-    sh_state_variable_filter_start(&filter[SH_FILTER_COS_M], sh_cos(turned), sh_cos(turned));
-    sh_state_variable_filter_start(&filter[SH_FILTER_TORQUE], torque, 0);
-    sh_state_variable_filter_start(&filter[SH_FILTER_NOMINAL], at->tau_nominal, 0);
-    sh_state_variable_filter_start(&filter[SH_FILTER_SIGN], 0, 0);
-    sh_state_variable_filter_start(&filter[SH_FILTER_UNKNOWN], 0, 0);
-    sh_state_variable_filter_start(&filter[SH_FILTER_LOAD], 0, 0);
-    for (i = 0; i < state->columns.filtered; ++i) {
-        sh_column_filters_start(&signals->columns, state->mean.output, i, at->F[i], 0);
-    }
     sh_motion_sign_start(&signals->motion, at->theta);
+    set_inputs(state, p, at, torque, x);
+    for (i = 0; i < SH_FILTERS; ++i) {
+        sh_filters_start(&signals->filters, i, x[i], i < SH_FILTER_NOMINAL ? x[i] : 0);
+    }
+    for (i = 0; i < state->columns.filtered; ++i) {
+        sh_filters_start(&signals->filters, SH_FILTERS + i, at->F[i], 0);
+    }
     for (i = 0; i < 5; ++i) {
         signals->theta_before[i] = at->theta;
     }
+    (void)memset(&state->mean, 0, sizeof state->mean);
     signals->begun = 1;
 }
 
-static void advance_measured(sh_signals *signals, const sh_parameters *p, sh_real theta,
-                             sh_real torque)
+static void advance_filters(sh_regression_state *state, const sh_parameters *p,
+                            const sh_joint_point *at, sh_real torque)
 {
-    const sh_filter_design *design = &signals->design;
-    sh_state_variable_filter *filter = signals->filter;
+    sh_signals *signals = &state->signals;
+    const int held = p->torque.held && !sh_is_measured(p);
+    sh_real x[SH_FILTERS];
     int i;
 
     for (i = 4; i > 0; --i) {
         signals->theta_before[i] = signals->theta_before[i - 1];
     }
-    signals->theta_before[0] = theta;
-    sh_state_variable_filter_step(&filter[SH_FILTER_THETA], design, theta);
-    if (p->torque.held && !sh_is_measured(p)) {
-        sh_state_variable_filter_step_mean(&filter[SH_FILTER_TORQUE], design,
-                                           signals->torque_before);
-    } else {
-        sh_state_variable_filter_step(&filter[SH_FILTER_TORQUE], design, torque);
+    signals->theta_before[0] = at->theta;
+    sh_motion_sign_step(&signals->motion, at->theta, signals->count,
+                        p->regression.slow * p->samplePeriod);
+    state->history.unsure = signals->motion.unknown > 0 ? state->history.unsure + 1 : 0;
+    set_inputs(state, p, at, held ? signals->torque_before : torque, x);
+    for (i = held ? SH_FILTER_TORQUE : SH_FILTER_SIGN; i < SH_FILTERS; ++i) {
+        sh_filters_hold(&signals->filters, i, x[i]);
     }
-    sh_motion_sign_step(&signals->motion, theta, signals->count, p->regression.slow * design->T);
-    sh_state_variable_filter_step_mean(&filter[SH_FILTER_SIGN], design, signals->motion.sign);
-    sh_state_variable_filter_step_mean(&filter[SH_FILTER_UNKNOWN], design, signals->motion.unknown);
-}
-
-/* Signals that begin as if they had been so before: those of the damping, and of the motor's encoder. */
-static void advance_steady(sh_signals *signals, const sh_parameters *p, const sh_joint_point *at)
-{
-    const sh_filter_design *design = &signals->design;
-    sh_state_variable_filter *filter = signals->filter;
-
-    if (p->prior.damping > 0) {
-        sh_state_variable_filter_step(&filter[SH_FILTER_PHI], design, at->phi);
-        sh_state_variable_filter_step(&filter[SH_FILTER_PHI_SET], design, at->phi_set);
-    }
-    if (p->prior.eccentric_motor > 0) {
-        const sh_real turned = p->motor.gamma * at->theta;
-
-        sh_state_variable_filter_step(&filter[SH_FILTER_SIN_M], design, sh_sin(turned));
-        sh_state_variable_filter_step(&filter[SH_FILTER_COS_M], design, sh_cos(turned));
-    }
-}
-
-/* The friction by load acts against the motion. Before the stiffness is known, the load is taken from
- * the motor data: it is the last fitted y (detail 13).
- */
-static void advance_load(sh_regression_state *state, const sh_joint_point *at)
-{
-    sh_signals *signals = &state->signals;
-    const sh_real load =
-        state->stiffness_known ? sh_columns_torque(&state->columns, at, state->beta) : state->y;
-
-    sh_state_variable_filter_step_mean(&signals->filter[SH_FILTER_LOAD], &signals->design,
-                                       -sh_fabs(load) * signals->motion.sign);
+    sh_filters_step(&signals->filters, &signals->design, 0, x, SH_FILTERS);
+    sh_filters_step(&signals->filters, &signals->design, SH_FILTERS, at->F,
+                    state->columns.filtered);
 }
 
 void sh_signals_take(sh_regression_state *state, const sh_parameters *p, const sh_measurement *z,
                      sh_real set_point, sh_joint_point *at)
 {
-    sh_signals *signals = &state->signals;
     const sh_real phi = z->q - z->theta, torque = sh_regression_torque(p, z, z->tau);
 
-    take_deformation(&state->history, signals, p, phi);
+    take_deformation(&state->history, &state->signals, p, phi);
     sh_joint_point_at(at, &state->columns, p, z->theta, z->q, phi, set_point, state->history.stop);
-    if (signals->begun) {
-        advance_measured(signals, p, at->theta, torque);
-        if (state->columns.has_nominal) {
-            sh_state_variable_filter_step(&signals->filter[SH_FILTER_NOMINAL], &signals->design,
-                                          at->tau_nominal);
-        }
-        state->history.unsure = signals->motion.unknown > 0 ? state->history.unsure + 1 : 0;
-        advance_load(state, at);
-        advance_steady(signals, p, at);
-        sh_column_filters_step(&signals->columns, state->mean.output, &signals->design, at->F,
-                               state->columns.filtered);
+    if (state->signals.begun) {
+        advance_filters(state, p, at, torque);
     } else {
         begin_filters(state, p, at, torque);
     }
-    signals->torque_before = torque;
-}
-
-/* The fourth difference of white noise of variance 1 has the variance 70. */
-sh_real sh_signals_roughness(const sh_signals *signals)
-{
-    const sh_real *theta = signals->theta_before;
-
-    return sh_square(theta[0] - 4 * theta[1] + 6 * theta[2] - 4 * theta[3] + theta[4]) / 70;
+    state->signals.torque_before = torque;
+    sh_filters_read(&state->signals.filters, &state->signals.design, &at->filtered);
 }

@@ -23,64 +23,7 @@ sh_filter_design sh_state_variable_filter_design(sh_real w, sh_real T)
     return design;
 }
 
-void sh_state_variable_filter_start(sh_state_variable_filter *filter, sh_real x, sh_real before)
-{
-    filter->input = x;
-    filter->behind[0] = filter->behind[1] = filter->behind[2] = x - before;
-}
-
-/* Advances by T, in which the signal rises by so much. In the steady state of a ramp, the output of stage i is
- * (i + 1) / (w T) samples behind the input. Deviations from that decay as in the filter without input.
- */
-static void advance(sh_state_variable_filter *filter, const sh_filter_design *design, sh_real rise)
-{
-    const sh_real *keep = design->keep;
-    sh_real *behind = filter->behind;
-
-    behind[2] =
-        keep[0] * behind[2] + keep[1] * behind[1] + keep[2] * behind[0] + design->rise[2] * rise;
-    behind[1] = keep[0] * behind[1] + keep[1] * behind[0] + design->rise[1] * rise;
-    behind[0] = keep[0] * behind[0] + design->rise[0] * rise;
-    if (sh_fabs(behind[2]) < SMALL && sh_fabs(behind[1]) < SMALL && sh_fabs(behind[0]) < SMALL) {
-        behind[0] = behind[1] = behind[2] = 0;
-    }
-}
-
-void sh_state_variable_filter_step(sh_state_variable_filter *filter, const sh_filter_design *design,
-                                   sh_real x)
-{
-    advance(filter, design, x - filter->input);
-    filter->input = x;
-}
-
-void sh_state_variable_filter_step_mean(sh_state_variable_filter *filter,
-                                        const sh_filter_design *design, sh_real mean)
-{
-    const sh_real jump = mean - filter->input;
-
-    filter->behind[0] += jump;
-    filter->behind[1] += jump;
-    filter->behind[2] += jump;
-    advance(filter, design, 0);
-    filter->input = mean;
-}
-
-void sh_state_variable_filter_add(sh_state_variable_filter *restrict sum,
-                                  const sh_state_variable_filter *restrict filter, int count,
-                                  sh_real share)
-{
-    int i;
-
-    for (i = 0; i < count; ++i) {
-        sum[i].input += share * filter[i].input;
-        sum[i].behind[0] += share * filter[i].behind[0];
-        sum[i].behind[1] += share * filter[i].behind[1];
-        sum[i].behind[2] += share * filter[i].behind[2];
-    }
-}
-
-void sh_column_filters_start(sh_column_filters *filters, sh_real *sum, int i, sh_real x,
-                             sh_real before)
+void sh_filters_start(sh_filters *filters, int i, sh_real x, sh_real before)
 {
     int k;
 
@@ -88,33 +31,45 @@ void sh_column_filters_start(sh_column_filters *filters, sh_real *sum, int i, sh
     for (k = 0; k < 3; ++k) {
         filters->behind[k][i] = x - before;
     }
-    sum[i] += before;
 }
 
-void sh_column_filters_step(sh_column_filters *restrict filters, sh_real *restrict sum,
-                            const sh_filter_design *design, const sh_real *restrict x, int count)
+void sh_filters_hold(sh_filters *filters, int i, sh_real mean)
+{
+    const sh_real jump = mean - filters->input[i];
+    int k;
+
+    filters->input[i] = mean;
+    for (k = 0; k < 3; ++k) {
+        filters->behind[k][i] += jump;
+    }
+}
+
+/* In the steady state of a ramp, the output of stage k is (k + 1) / (w T) samples behind the input. Deviations from
+ * that decay as in the filter without input.
+ */
+void sh_filters_step(sh_filters *restrict filters, const sh_filter_design *design, int first,
+                     const sh_real *restrict x, int count)
 {
     const sh_real *keep = design->keep, *rise = design->rise;
     const sh_real k0 = keep[0], k1 = keep[1], k2 = keep[2];
     const sh_real r0 = rise[0], r1 = rise[1], r2 = rise[2];
-    sh_real(*behind)[SH_MAX_COLUMNS] = filters->behind;
+    sh_real *input = filters->input + first, *behind_0 = filters->behind[0] + first;
+    sh_real *behind_1 = filters->behind[1] + first, *behind_2 = filters->behind[2] + first;
     int i;
 
-    for (i = 0; i < count; ++i) { /* as in `advance` */
-        const sh_real u = x[i] - filters->input[i], d0 = behind[0][i], d1 = behind[1][i];
-        const sh_real d2 = k0 * behind[2][i] + k1 * d1 + k2 * d0 + r2 * u;
+    for (i = 0; i < count; ++i) {
+        const sh_real u = x[i] - input[i], d0 = behind_0[i], d1 = behind_1[i];
 
-        filters->input[i] = x[i];
-        behind[0][i] = k0 * d0 + r0 * u;
-        behind[1][i] = k0 * d1 + k1 * d0 + r1 * u;
-        behind[2][i] = d2;
-        sum[i] += x[i] - d2;
+        input[i] = x[i];
+        behind_0[i] = k0 * d0 + r0 * u;
+        behind_1[i] = k0 * d1 + k1 * d0 + r1 * u;
+        behind_2[i] = k0 * behind_2[i] + k1 * d1 + k2 * d0 + r2 * u;
     }
 }
 
-void sh_column_filters_rest(sh_column_filters *filters, int count)
+void sh_filters_rest(sh_filters *filters, int count)
 {
-    sh_real(*behind)[SH_MAX_COLUMNS] = filters->behind;
+    sh_real(*behind)[SH_MAX_FILTERS] = filters->behind;
     int i;
 
     for (i = 0; i < count; ++i) {
@@ -124,41 +79,48 @@ void sh_column_filters_rest(sh_column_filters *filters, int count)
     }
 }
 
-sh_real sh_state_variable_filter_output(const sh_state_variable_filter *filter)
+static sh_real output_of(const sh_filters *filters, int i)
 {
-    return filter->input - filter->behind[2];
+    return filters->input[i] - filters->behind[2][i];
 }
 
-sh_real sh_state_variable_filter_first(const sh_state_variable_filter *filter,
-                                       const sh_filter_design *design)
+static sh_real second_of(const sh_filters *filters, const sh_filter_design *design, int i)
 {
-    return design->w * (filter->behind[2] - filter->behind[1]);
+    return design->w * design->w *
+           (2 * filters->behind[1][i] - filters->behind[0][i] - filters->behind[2][i]);
 }
 
-sh_real sh_state_variable_filter_second(const sh_state_variable_filter *filter,
-                                        const sh_filter_design *design)
+void sh_filters_read(const sh_filters *filters, const sh_filter_design *design,
+                     sh_filtered *filtered)
 {
-    return design->w * design->w * (2 * filter->behind[1] - filter->behind[0] - filter->behind[2]);
+    int i;
+
+    /*@ loop unroll SH_FILTERS; */
+    for (i = 0; i < SH_FILTERS; ++i) {
+        filtered->output[i] = output_of(filters, i);
+        filtered->first[i] = design->w * (filters->behind[2][i] - filters->behind[1][i]);
+        filtered->second[i] = second_of(filters, design, i);
+    }
 }
 
 void sh_state_variable_filter_noise(const sh_filter_design *design, sh_real rows, int K,
                                     sh_real *gain, sh_real *gain_second)
 {
     const sh_real last = rows * (sh_real)K + 3 + sh_floor(60 / (design->w * design->T));
-    sh_state_variable_filter filter;
+    sh_filters one;
     sh_real energy = 0;
     int k;
 
-    sh_state_variable_filter_start(&filter, 0, 0);
+    sh_filters_start(&one, 0, 0, 0);
     *gain = *gain_second = 0;
     for (k = 0; k < SH_MOST_SAMPLES && (sh_real)k < last; ++k) { /* decayed after 60 / w */
         const int row = k / K;
         const sh_real h = (sh_real)row < rows ? sh_window((sh_real)row, rows) : 0;
 
-        sh_state_variable_filter_step(&filter, design, h);
+        sh_filters_step(&one, design, 0, &h, 1);
         energy += sh_square(h);
-        *gain += sh_square(sh_state_variable_filter_output(&filter));
-        *gain_second += sh_square(sh_state_variable_filter_second(&filter, design));
+        *gain += sh_square(output_of(&one, 0));
+        *gain_second += sh_square(second_of(&one, design, 0));
     }
     *gain /= energy;
     *gain_second /= energy;

@@ -15,43 +15,24 @@
  */
 sh_filter_design sh_state_variable_filter_design(sh_real w, sh_real T);
 
-/* Starts the filter for a signal that has always been `before` and jumps to x now. */
-void sh_state_variable_filter_start(sh_state_variable_filter *filter, sh_real x, sh_real before);
+/* Starts filter i for a signal that has always been `before` and jumps to x now. */
+void sh_filters_start(sh_filters *filters, int i, sh_real x, sh_real before);
 
-/* Advances the filter by T, in which the signal went linearly to x. */
-void sh_state_variable_filter_step(sh_state_variable_filter *filter, const sh_filter_design *design,
-                                   sh_real x);
+/* Gives the next sample of filter i, of a signal that has this mean between the samples and is not linear. */
+void sh_filters_hold(sh_filters *filters, int i, sh_real mean);
 
-/* Advances the filter by T, in which the signal had the given mean. One filter takes only one of
- * the two kinds of steps.
+/* Advances filters from the first one on by T, in which their signals go linearly to x [size: count]. */
+void sh_filters_step(sh_filters *restrict filters, const sh_filter_design *design, int first,
+                     const sh_real *restrict x, int count);
+
+/* Lets those of the first filters rest that are as good as at rest: processors compute slowly with the numbers to
+ * which they would decay.
  */
-void sh_state_variable_filter_step_mean(sh_state_variable_filter *filter,
-                                        const sh_filter_design *design, sh_real mean);
+void sh_filters_rest(sh_filters *filters, int count);
 
-/* sum += share filter [size: count]: the outputs of a mean of states are the means of the outputs. */
-void sh_state_variable_filter_add(sh_state_variable_filter *restrict sum,
-                                  const sh_state_variable_filter *restrict filter, int count,
-                                  sh_real share);
-
-/* The same for the filters of the columns: starts the one of column i, and advances all to x [size: count], linearly.
- * Their outputs are added to a sum [size: count].
- */
-void sh_column_filters_start(sh_column_filters *filters, sh_real *sum, int i, sh_real x,
-                             sh_real before);
-void sh_column_filters_step(sh_column_filters *restrict filters, sh_real *restrict sum,
-                            const sh_filter_design *design, const sh_real *restrict x, int count);
-
-/* Lets those rest that are as good as at rest: processors compute slowly with the numbers to which they would decay. */
-void sh_column_filters_rest(sh_column_filters *filters, int count);
-
-/* The filtered signal. */
-sh_real sh_state_variable_filter_output(const sh_state_variable_filter *filter);
-
-/* First and second derivative of the filtered signal, in its unit per s and per s2. */
-sh_real sh_state_variable_filter_first(const sh_state_variable_filter *filter,
-                                       const sh_filter_design *design);
-sh_real sh_state_variable_filter_second(const sh_state_variable_filter *filter,
-                                        const sh_filter_design *design);
+/* Sets the signals behind the filters. */
+void sh_filters_read(const sh_filters *filters, const sh_filter_design *design,
+                     sh_filtered *filtered);
 
 /* Window h = 16 x^2 (1 - x)^2 at row k of a block of so many rows; 1 for a row alone. */
 static inline sh_real sh_window(sh_real k, sh_real rows)

@@ -234,7 +234,7 @@ typedef struct {
     struct {
         sh_real bandwidth; /* w of the filter [rad/s], fixed; 1e-4 <= w T < 2 with this
                               method. A smaller one is used if the rounding of theta needs it:
-                              sh_regression_bandwidth in regression.h */
+                              c/filtered_regression/signals.c */
         sh_real slow;      /* |theta'| below which the sign of friction is unknown [rad/s],
                               >= 1e-15 */
         sh_real drift;     /* share of its prior variance by which the torque curve drifts in a

@@ -78,13 +78,6 @@ typedef struct {
     sh_real rise[3]; /* deviation of each stage after T behind a signal that rises by 1 */
 } sh_filter_design;
 
-/* Filter of one signal, in the unit of the signal. */
-typedef struct {
-    sh_real input;     /* last sample */
-    sh_real behind[3]; /* input less output of each stage: small numbers, so that derivatives lose
-                          no digits however far the signal is from zero */
-} sh_state_variable_filter;
-
 /* Direction of motion of one motor. */
 typedef struct {
     sh_real position;  /* at the last change of position [rad] */
@@ -142,27 +135,37 @@ typedef struct {
     sh_column column[SH_MAX_COLUMNS];
 } sh_columns;
 
-/* What the filters are of. */
+/* What the filters are of. Those before the nominal torque start as if their signal had always been the same, others at 0. */
 enum {
     SH_FILTER_THETA,
-    SH_FILTER_TORQUE,
-    SH_FILTER_SIGN,    /* of the velocity */
-    SH_FILTER_UNKNOWN, /* share of the sample in which the sign is unknown */
-    SH_FILTER_NOMINAL, /* torque of the curve rls.eta_0 */
-    SH_FILTER_LOAD,    /* -|tau_e| s, friction that grows with the load */
     SH_FILTER_PHI,     /* deformation */
     SH_FILTER_PHI_SET, /* deformation times the highest power of the set-point */
     SH_FILTER_SIN_M,   /* sine and cosine of the angle of the motor's encoder */
     SH_FILTER_COS_M,
-    SH_FILTERS
+    SH_FILTER_NOMINAL, /* torque of the curve rls.eta_0 */
+    SH_FILTER_TORQUE,
+    SH_FILTER_SIGN,    /* of the velocity */
+    SH_FILTER_UNKNOWN, /* share of the sample in which the sign is unknown */
+    SH_FILTER_LOAD,    /* -|tau_e| s, friction that grows with the load */
+    SH_FILTERS,        /* behind them: the columns whose entry is the output of a filter */
+    SH_MAX_FILTERS = SH_FILTERS + SH_MAX_COLUMNS
 };
 
-/* Filters of the columns whose entry is their output, as sh_state_variable_filter. Each number stands side by side for
- * all of them, so that compilers compute with several columns at once.
+/* All filters, each in the unit of its signal. Each number stands side by side for all of them, so that compilers
+ * compute with several at once.
  */
 typedef struct {
-    sh_real input[SH_MAX_COLUMNS], behind[3][SH_MAX_COLUMNS];
-} sh_column_filters;
+    sh_real input[SH_MAX_FILTERS]; /* last sample */
+    sh_real behind
+        [3]
+        [SH_MAX_FILTERS]; /* input less output of each stage: small numbers, so that derivatives lose
+                                          no digits however far the signal is from zero */
+} sh_filters;
+
+/* Signals behind their filters, and their derivatives by the time. */
+typedef struct {
+    sh_real output[SH_FILTERS], first[SH_FILTERS], second[SH_FILTERS];
+} sh_filtered;
 
 /* Signals and their filters, which all have the same design. */
 typedef struct {
@@ -172,8 +175,7 @@ typedef struct {
     int decimation; /* K: samples of a row */
     /* Variance of the mean of K samples if white noise of variance 1 is filtered by H [1], by s^2 H [1/s4]: */
     sh_real gain, gain_second;
-    sh_state_variable_filter filter[SH_FILTERS];
-    sh_column_filters columns;
+    sh_filters filters;
     sh_motion_sign motion;
     sh_real torque_before;   /* torque of the last sample [N.m] */
     sh_real theta_before[5]; /* the last positions, for differences [rad] */
@@ -193,11 +195,11 @@ typedef struct {
 
 /* Sums over the samples of the next row. */
 typedef struct {
-    int samples;                                 /* taken so far */
-    sh_real rough;                               /* of the noise of theta [rad2] */
-    sh_real moved;                               /* of the samples with which theta changed [1] */
-    sh_state_variable_filter filter[SH_FILTERS]; /* of the states of the filters */
-    sh_real output[SH_MAX_COLUMNS]; /* of the filters of the columns, K times as much */
+    int samples;                    /* taken so far */
+    sh_real rough;                  /* of the noise of theta [rad2] */
+    sh_real moved;                  /* of the samples with which theta changed [1] */
+    sh_filtered filtered;           /* of the signals */
+    sh_real output[SH_MAX_COLUMNS]; /* of the filters of the columns */
 } sh_mean;
 
 /* The last row. The steps that take it are spread over the ticks until the next one. */

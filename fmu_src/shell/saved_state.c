@@ -11,7 +11,7 @@
 
 enum {
     GUID_LENGTH = 64,
-    STATE_VERSION = 22 /* to be raised with every change of a model's struct: the GUID changes
+    STATE_VERSION = 23 /* to be raised with every change of a model's struct: the GUID changes
                          with the variables only */
 };
 

@@ -45,12 +45,6 @@ class Information:
         self.c.lib.sh_information_solve(self.a, last, *both)
         return beta if side == Y else per_gain
 
-    def variances(self, first: Array, second: Array) -> tuple[float, float]:
-        """Variances of two combinations."""
-        last, both = self.c.lib.sh_information_last(self.a), (first.copy(), second.copy())
-        found = self.c.lib.sh_information_variances(self.a, last.D, *map(self.c.pointer, both))
-        return found.first, found.second
-
     def check(self, rel: float = 1e-9) -> None:
         """The factors multiply to the dense matrix, and its least sum of squares is left."""
         n = self.size
@@ -78,43 +72,6 @@ def test_samples_add_to_the_information(c: Library, size: int) -> None:
     for beta in (rng.normal(size=size), a.solve(Y)):
         found = c.lib.sh_information_squares(a.a, c.pointer(beta))
         assert found == pytest.approx(a.want.squares(beta.astype(np.longdouble)), rel=1e-9)
-
-
-@each_size
-def test_the_variances_of_two_combinations(c: Library, size: int) -> None:
-    rng = np.random.default_rng(size)
-    a = Information(c, size)
-    a.fill(rng, size + 2)
-    P = np.linalg.inv(a.matrix)
-    first, second = rng.normal(size=(2, size))
-    second[: size // 2] = 0.0
-    want = [combination @ P @ combination for combination in (first, second)]
-    assert a.variances(first, second) == pytest.approx(want, rel=1e-9)
-
-
-@each_size
-def test_a_sample_can_be_taken_in_parts(c: Library, size: int) -> None:
-    """What the first rows leave, with its weight, is a sample for the others."""
-    rng = np.random.default_rng(size)
-    whole = Information(c, size)
-    whole.fill(rng, size + 2)
-    row, w = rng.normal(size=size + SIDES), 1.7
-    for end in range(size + 1):
-        parts, of_the_rest = c.new("sh_information"), c.new("sh_information")
-        parts[0] = of_the_rest[0] = whole.a[0]
-        x = row.copy()
-        left = c.lib.sh_information_take_rows(parts, 0, end, c.pointer(x), w)
-        rest = np.append(np.zeros(end), x[end:])
-        c.lib.sh_information_take(of_the_rest, c.pointer(rest), left)
-        c.lib.sh_information_take_rows(parts, end, size, c.pointer(x), left)
-        # The first rows have the difference between the whole sample and what is left of it.
-        now, before = factors(parts), factors(of_the_rest)
-        for found, want in zip(now, before, strict=True):
-            assert found[end:] == pytest.approx(want[end:], rel=1e-9, abs=1e-12)
-        at_once = c.new("sh_information")
-        at_once[0] = whole.a[0]
-        c.lib.sh_information_take(at_once, c.pointer(row.copy()), w)
-        assert np.hstack(dense(parts)) == pytest.approx(np.hstack(dense(at_once)), rel=1e-9)
 
 
 @each_size

@@ -132,20 +132,6 @@ def test_rounding_errors_of_many_small_moves_do_not_add_up(c: Library) -> None:
     assert left == pytest.approx(1e-5, rel=1e-6)
 
 
-@pytest.mark.parametrize("size", [1, 2, 3, 4, 5, 8])
-def test_nothing_behind_the_end_of_a_regressor_is_used(c: Library, size: int) -> None:
-    """GIVEN regressors with NaN behind their end in memory, THEN results are the same as with 0."""
-    rng = np.random.default_rng(size)
-    plain, guarded = (Recursion(c, ENHANCED, 0.5, 2.0, np.zeros(size)) for _ in range(2))
-    for F, y in zip(rng.normal(size=(5, size)), rng.normal(size=5), strict=True):
-        for recursion, behind in ((plain, 0.0), (guarded, math.nan)):
-            v = np.append(F, np.full(4, behind))
-            assert recursion.update(v, y)
-            c.lib.sh_least_squares_move(recursion.state, 0.1, c.pointer(v))
-            assert c.lib.sh_ud_factor_variance(recursion.P, c.pointer(v)) > 0.0
-    assert guarded.bytes() == plain.bytes()
-
-
 @pytest.mark.parametrize("size", [1, 2, 3])
 def test_the_prediction_uses_the_rounding_error_of_the_estimate(c: Library, size: int) -> None:
     recursion = Recursion(c, STANDARD, 1.0, 1.0, np.full(size, 1e8))  # the last digit is 1.5e-8

@@ -6,11 +6,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy import signal
 
 from c_library import Estimator, Library
 from c_regression import covariance, kinds
-from regression_joint import PLAIN, SETTINGS, STIFFNESS, Joint, MisfitJoint, T, at_rest
+from regression_joint import PLAIN, SETTINGS, STIFFNESS, Joint, MisfitJoint, at_rest
 
 HYSTERESIS, GAP = 4, 6
 
@@ -230,40 +229,3 @@ def test_a_long_rest_changes_neither_the_estimate_nor_the_misfit(c: Library) -> 
     assert after.sigma_std > 0.5 * before.sigma_std
     assert after.misfit == pytest.approx(before.misfit, rel=0.1)
     assert np.all(np.isfinite(covariance(estimator)))
-
-
-# A torque that a drive holds
-
-
-def held(frequency: float, hold: bool) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
-    """Motor, spring and load, exactly, with a torque that is held or linear between samples."""
-    gamma, B, D, M = 50.0, 2.3e-5, 1e-3, 0.02
-    inertia, damping = gamma**2 * B, gamma**2 * D  # behind the gear
-    k = STIFFNESS
-    A = [[0, 1, 0, 0], [-k / inertia, -damping / inertia, k / inertia, 0]]
-    A += [[0, 0, 0, 1], [k / M, 0, -k / M, -0.1 / M]]
-    b = np.array([[0.0], [gamma / inertia], [0.0], [0.0]])
-    system = (np.array(A), b, np.eye(4)[[0, 2]], np.zeros((2, 1)))
-    t = T * np.arange(6000)
-    rng = np.random.default_rng(1)
-    tones = [frequency * f for f in (0.6, 1.0, 1.37)]
-    tau = sum(np.sin(2 * np.pi * f * t + rng.uniform(0, 6)) for f in tones) * 0.3
-    tau = tau * (1 - np.exp(-((t / 0.2) ** 3)))
-    discrete = signal.cont2discrete(system, T, method="zoh" if hold else "foh")
-    _, outputs, _ = signal.dlsim((*discrete[:4], T), tau)
-    zero = np.zeros(len(t))
-    return np.column_stack([outputs[:, 0], outputs[:, 1], zero, tau, zero])
-
-
-@pytest.mark.parametrize("hold", [True, False])
-def test_a_held_torque_is_exact(c: Library, hold: bool) -> None:
-    """At 20 Hz, with exact encoders and without noise."""
-    z = held(20.0, hold)
-    values = {**SETTINGS, **PLAIN, "encoder.theta": 0.0, "encoder.q": 0.0, "noise.tau": 1e-5}
-    errors = []
-    for parameter in (0, 1):
-        found = Estimator(c, {**values, "torque.held": parameter}).run(z)
-        errors.append(abs(found["sigma"][-1] / STIFFNESS - 1))
-    right, wrong = errors[::-1] if hold else errors
-    assert right < 1e-3
-    assert wrong > 10 * right

@@ -108,82 +108,72 @@ def design(c: Library, w: float) -> Any:
     return c.ffi.new("sh_filter_design *", c.lib.sh_state_variable_filter_design(w, T))
 
 
-def outputs(c: Library, f: Any, d: Any) -> list[float]:
-    """The signal behind the filter, and two derivatives."""
-    behind = c.lib.sh_state_variable_filter_output(f)
-    first = c.lib.sh_state_variable_filter_first(f, d)
-    return [behind, first, c.lib.sh_state_variable_filter_second(f, d)]
+class Filters:
+    """The first filters, each of a signal that has been the first sample, or 0, and is x now."""
+
+    def __init__(self, c: Library, w: float, x: Array, before: Array) -> None:
+        self.c, self.design, self.filters = c, design(c, w), c.new("sh_filters")
+        for i, (value, value_before) in enumerate(zip(x, before, strict=True)):
+            c.lib.sh_filters_start(self.filters, i, value, value_before)
+
+    def step(self, x: Array) -> None:
+        pointer = self.c.pointer(np.ascontiguousarray(x))
+        self.c.lib.sh_filters_step(self.filters, self.design, 0, pointer, len(x))
+
+    @property
+    def outputs(self) -> Array:
+        """The signals behind the filters, and two derivatives [size: 3 x SH_FILTERS]."""
+        filtered = self.c.new("sh_filtered")
+        self.c.lib.sh_filters_read(self.filters, self.design, filtered)
+        return np.array([list(filtered.output), list(filtered.first), list(filtered.second)])
 
 
 def random_walk(seed: int) -> Array:
     return np.cumsum(np.random.default_rng(seed).normal(size=300))
 
 
+@pytest.mark.parametrize("held", [False, True])
 @pytest.mark.parametrize("w", [1.0, 200.0, 3000.0])
-def test_signals_that_are_linear_between_samples_are_filtered_exactly(c: Library, w: float) -> None:
-    x = random_walk(1)
-    d, f = design(c, w), c.new("sh_state_variable_filter")
-    c.lib.sh_state_variable_filter_start(f, x[0], 0.0)
-    got = [outputs(c, f, d)]
-    for value in x[1:]:
-        c.lib.sh_state_variable_filter_step(f, d, value)
-        got.append(outputs(c, f, d))
-    for order, values in enumerate(np.array(got).T):
+def test_signals_are_filtered_exactly(c: Library, w: float, held: bool) -> None:
+    """Of each filter: a signal that is linear between samples, or held before each sample."""
+    walk, sizes = random_walk(1), np.arange(1.0, 1 + c.lib.SH_FILTERS)
+    filters = Filters(c, w, walk[0] * sizes, 0 * sizes)
+    got = [filters.outputs]
+    for value in walk[1:]:
+        for i, size in enumerate(sizes if held else []):
+            c.lib.sh_filters_hold(filters.filters, i, value * size)
+        filters.step(value * sizes)
+        got.append(filters.outputs)
+    u = np.append(walk[1:], 0.0) if held else walk
+    for order, found in enumerate(np.swapaxes(got, 0, 1)):
         system = [w**3] + [0.0] * order, np.poly([-w] * 3)  # s^order w^3 / (s + w)^3
-        _, want, _ = signal.lsim(system, x, T * np.arange(len(x)), interp=True)
-        assert np.max(np.abs(values - want)) < 1e-9 * np.max(np.abs(want))
+        _, want, _ = signal.lsim(system, u, T * np.arange(len(u)), interp=not held)
+        assert np.max(np.abs(found / sizes - want[:, None])) < 1e-9 * np.max(np.abs(want))
 
 
 def test_a_start_at_a_constant_signal_has_no_transient(c: Library) -> None:
-    lib, d, f = c.lib, design(c, 200.0), c.new("sh_state_variable_filter")
-    lib.sh_state_variable_filter_start(f, 7.0, 7.0)
-    lib.sh_state_variable_filter_step(f, d, 7.0)
-    assert outputs(c, f, d) == [7.0, 0.0, 0.0]
+    filters = Filters(c, 200.0, np.array([7.0]), np.array([7.0]))
+    filters.step(np.array([7.0]))
+    assert filters.outputs[:, 0].tolist() == [7.0, 0.0, 0.0]
 
 
 def test_derivatives_are_the_same_far_from_zero(c: Library) -> None:
     """To the last bit: the signal has integers, to which 2^40 is added exactly."""
-    lib, d = c.lib, design(c, 200.0)
-    near, far = (c.new("sh_state_variable_filter") for _ in range(2))
-    lib.sh_state_variable_filter_start(near, 0.0, 0.0)
-    lib.sh_state_variable_filter_start(far, 2.0**40, 2.0**40)
+    far = np.array([0.0, 2.0**40])
+    filters = Filters(c, 200.0, far, far)
     for value in np.round(10 * random_walk(3)):
-        for f, x in ((near, value), (far, 2.0**40 + value)):
-            lib.sh_state_variable_filter_step(f, d, x)
-        assert outputs(c, far, d)[1:] == outputs(c, near, d)[1:]
+        filters.step(far + value)
+        assert np.array_equal(*filters.outputs[1:, :2].T)
 
 
 def test_at_rest_the_state_becomes_zero_and_never_denormal(c: Library) -> None:
-    lib, d, f = c.lib, design(c, 200.0), c.new("sh_state_variable_filter")
-    lib.sh_state_variable_filter_start(f, 1.0, 0.0)
+    filters = Filters(c, 200.0, np.ones(1), np.zeros(1))
     for _ in range(1000):
-        lib.sh_state_variable_filter_step(f, d, 1.0)
-        assert all(behind == 0.0 or abs(behind) > 1e-300 for behind in f.behind)
-    assert list(f.behind) == [0.0] * 3
-
-
-def test_filters_of_the_columns_are_the_same_filter(c: Library) -> None:
-    """Of the first and the last column: one starts with a jump; also their mean, and at rest."""
-    size, befores = c.lib.SH_MAX_COLUMNS, {0: 0.0, c.lib.SH_MAX_COLUMNS - 1: 2.0}
-    d, columns, total = design(c, 350.0), c.new("sh_column_filters"), np.zeros(size)
-    filters, want = {i: c.new("sh_state_variable_filter") for i in befores}, np.zeros(2)
-    for k, value in enumerate(np.append(2.0 + random_walk(2), np.full(400, 3.0))):
-        for i, before in befores.items():
-            if k == 0:
-                c.lib.sh_state_variable_filter_start(filters[i], value, before)
-                c.lib.sh_column_filters_start(columns, c.pointer(total), i, value, before)
-            else:
-                c.lib.sh_state_variable_filter_step(filters[i], d, value)
-        if k > 0:
-            x = np.full(size, value)
-            c.lib.sh_column_filters_step(columns, c.pointer(total), d, c.pointer(x), size)
-            c.lib.sh_column_filters_rest(columns, size)
-        states = np.array([[f.input, *f.behind] for f in filters.values()])
-        got = [[columns.input[i], *(b[i] for b in columns.behind)] for i in befores]
-        np.testing.assert_allclose(got, states, 1e-12, 1e-12)
-        want += [outputs(c, f, d)[0] for f in filters.values()]
-        np.testing.assert_allclose(total[list(befores)], want, 1e-12, 1e-12)
-    assert all(b[i] == 0.0 for b in columns.behind for i in befores)
+        filters.step(np.ones(1))
+        c.lib.sh_filters_rest(filters.filters, 1)
+        behind = [stage[0] for stage in filters.filters.behind]
+        assert all(value == 0.0 or abs(value) > 1e-300 for value in behind)
+    assert behind == [0.0] * 3
 
 
 @pytest.mark.parametrize("samples", [1, 5])

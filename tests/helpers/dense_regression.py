@@ -84,14 +84,16 @@ class Information:
     def fade(self, keep: float) -> None:
         """No entry of D falls below the least one."""
         rows, D, rest = self.factors()
-        self.matrix = (rows.T * np.maximum(D * keep, self.least)) @ rows
-        self.matrix[-1, -1] += rest * keep
+        self.multiply(rows, np.maximum(D * keep, self.least), rest * keep)
 
     def restart(self, count: int, precision: float) -> None:
         """Of the first parameters, only this precision is known."""
         rows, D, rest = self.factors()
         rows[:count] = np.eye(self.size, len(self.matrix))[:count]
         D[:count] = precision
+        self.multiply(rows, D, rest)
+
+    def multiply(self, rows: Long, D: Long, rest: np.longdouble) -> None:
         self.matrix = (rows.T * D) @ rows
         self.matrix[-1, -1] += rest
 
@@ -313,28 +315,14 @@ class Oracle:
             while unread > 0:
                 unread -= 2 if unread - 1 > self.n // 2 else 1
                 yield
-            if self.trial:
-                self.end_trial()
-            else:
-                self.end_build()
-            yield
-            if not self.trial:
-                self.use_build()
-            yield
-            if not self.trial:
-                self.set_beta()
-            yield
-            self.new_variances |= not self.trial
-            yield
-            self.judge_recent()
-            yield
-            self.judge()
-            yield
-            self.plan()
-            self.pause = 0.0
-            yield
-            for step in range(0 if self.trial else 4):
-                yield from self.watch_friction(self.since, step)
+            use = (self.end_build, self.use_build, self.set_beta, self.renew_variances)
+            trial = (self.end_trial, *[lambda: None] * 3)
+            judge = (self.judge_recent, self.judge, self.plan)
+            for step in (*(trial if self.trial else use), *judge):
+                step()
+                yield
+            for half in range(0 if self.trial else 4):
+                yield from self.watch_friction(self.since, half)
             if not self.trial:
                 self.forget(self.since)
                 self.since = 0.0
@@ -359,6 +347,9 @@ class Oracle:
         self.build = Posterior([], 1.0, 0.0, -1)  # until the next pass starts
         self.is_built = False
         _, self.P = self.live.weighted()
+
+    def renew_variances(self) -> None:
+        self.new_variances = True
 
     def end_trial(self) -> None:
         own = sum(self.groups[i] != self.trial for i in self.build.chosen)
@@ -405,6 +396,7 @@ class Oracle:
 
     def plan(self) -> None:
         """After each pass a trial of the next group, if it has columns."""
+        self.pause = 0.0
         was_trial, self.trial = self.trial != 0, 0
         if was_trial or self.blocks.count < 15:
             return
@@ -475,41 +467,31 @@ class Oracle:
         largest = self.p["motor.gamma"] * self.p["prior.tau_coulomb"] * unknown
         return float(largest**2 * variance)
 
-    def share_of_torque(self, unknown: float) -> float:
-        inertial = self.inertial * max(self.rough, self.counts[0] ** 2 / 12)
-        whole = self.torque_noise + inertial + self.friction_variance(unknown)
-        return float(self.torque_noise / whole)
-
-    def watch(self, roughness: float) -> None:
-        self.rough += min(self.T / 0.1, 1) * (roughness - self.rough)
-
-    def excess(self) -> float:
-        """X, the noise over what rounding explains [1]."""
-        rounded = self.torque_noise + self.inertial * self.counts[0] ** 2 / 12
-        return max(1.0, float((self.torque_noise + self.inertial * self.rough) / rounded))
-
-    def variance(self, filtered: Filtered, unknown: float) -> tuple[float, float]:
-        """R, and the factor in it by errors that last."""
-        rounding = self.sigma**2 * float(np.sum(self.counts**2)) / 12
-        stays = rounding * self.resting
+    def noise_of_row(self, filtered: Filtered, unknown: float) -> tuple[float, float, float]:
+        """R, the factor in it by errors that last, and lambda."""
+        p, rounding = self.p, self.sigma**2 * float(np.sum(self.counts**2)) / 12
+        stays, share = rounding * self.resting, 0.0
         if filtered.measured:
-            R = rounding + self.p["noise.tau_e"] ** 2
+            R = rounding + p["noise.tau_e"] ** 2
         else:
             friction = self.friction_variance(unknown)
-            R = (rounding + self.of_torque) * (1 + 0.3 * (self.excess() - 1))
+            rounded = self.torque_noise + self.inertial * self.counts[0] ** 2 / 12
+            whole = max(rounded, self.torque_noise + self.inertial * self.rough)
+            share = self.torque_noise / (whole + friction)
+            R = (rounding + self.of_torque) * (1 + 0.3 * (whole / rounded - 1))
             R += friction * 16 / (3 * self.w * self.T)
             stays += friction * self.unsure
         last = (1 + stays / R) ** 2
-        return R * last / self.K, last
+        return float(R * last / self.K), float(last), float(share)
 
     def learn(self, k: int, filtered: Filtered, row: Long, rough: Array) -> None:
         at = k - filtered.run.start
-        R, last = self.variance(filtered, filtered.unknown_f[at])
+        R, last, share = self.noise_of_row(filtered, filtered.unknown_f[at])
         self.R, self.before = R, row
         rounding = self.gain * float(np.sum(self.counts**2)) / 12
         self.rounding += (rounding + (0.035 * self.p["prior.eccentric"]) ** 2) / R
         if "DRIVE" in self.kinds and not filtered.measured and row[-SIDES] != 0:
-            self.remove_noise(row, self.share_of_torque(filtered.unknown_f[at]), R)
+            self.remove_noise(row, share, R)
         self.has_row = True
         self.epsilon = self.error(row)
         self.rho = self.live.learn(row, 1 / R)
@@ -691,7 +673,7 @@ class Oracle:
             settled, complete = self.settling <= 0, False
             if settled:
                 if not filtered.measured:
-                    self.watch(rough[at])
+                    self.rough += min(self.T / 0.1, 1) * (rough[at] - self.rough)
                 self.samples.append(at)
                 complete = len(self.samples) == self.K
             if complete:
@@ -733,27 +715,19 @@ class Oracle:
 
     def judge_knees(self, k: int) -> tuple[Array, float]:
         """Slopes of the columns, and variance of the stiffness beside a place where it changes."""
-        dF, x, half = self.inputs.dF[k].copy(), self.inputs.x[k], 0.5 / self.p["range.phi"]
-        coefficients = [
-            (float(b) * c[2] * half) ** 2 for b, c in zip(self.beta, self.columns, strict=True)
-        ]
-        places = {
-            i: place_of_knee(self.p, c[1])
-            for i, c in enumerate(self.columns)
-            if c[0] in ("KNEE", "POSSIBLE_KNEE")
-        }
-        x_of = np.abs(x) if self.p["rls.symmetric"] else x
-        variance = sum(coefficients[i] for i, knee in places.items() if abs(x_of - knee) < 0.02)
-        widest = [i for i, c in enumerate(self.columns) if c[:2] == ("DEAD_ZONE", 2)]
-        for i in widest:
-            outside = (
-                float(np.delete(dF, i) @ np.delete(self.beta, i)) + self.inputs.nominal_slope[k]
-            )
-            jump = float(self.beta[i]) * self.columns[i][2] * 2 * half / GAPS[2]
-            if outside + jump < 0.3 * outside:
-                dF[i] = 0.0
-            elif GAPS[2] / 2 < abs(x) < 2 * GAPS[2]:
-                variance += (jump / 2) ** 2
+        dF, x, variance = self.inputs.dF[k].copy(), self.inputs.x[k], 0.0
+        place = abs(x) if self.p["rls.symmetric"] else x
+        for i, (kind, index, prior) in enumerate(self.columns):
+            jump = float(self.beta[i]) * prior / self.p["range.phi"]
+            if kind in ("KNEE", "POSSIBLE_KNEE"):
+                variance += (jump / 2) ** 2 * (abs(place - place_of_knee(self.p, index)) < 0.02)
+            elif (kind, index) == ("DEAD_ZONE", 2):
+                jump, others = jump / GAPS[2], np.arange(self.n) != i
+                outside = float(dF[others] @ self.beta[others]) + self.inputs.nominal_slope[k]
+                if outside + jump < 0.3 * outside:
+                    dF[i] = 0.0
+                elif GAPS[2] / 2 < abs(x) < 2 * GAPS[2]:
+                    variance += (jump / 2) ** 2
         return dF, variance
 
     def report(self, k: int, y: float, settled: bool) -> None:

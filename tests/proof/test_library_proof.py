@@ -34,7 +34,7 @@ TRIANGLES = re.findall(
 APART = (
     *("-eva-split-return", "full", "-eva-slevel-function"),
     "restored:9999,sh_estimator_check:9999,sh_filtered_regression_check_state:9999,are_columns:99,"
-    "are_data:30,is_choice:1000,is_refit:60,are_numbers:30",
+    "is_choice:1000,are_numbers:200",
 )
 
 

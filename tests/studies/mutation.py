@@ -61,7 +61,7 @@ TOKEN = re.compile(
 EQUIVALENT: tuple[tuple[str, str, str], ...] = (
     ("method.c", "return p->method >= 1 &&", "there is no method 0; in the table it is NULL"),
     ("motion_sign.c", "way = change >= 0 ? 1 : -1;", "it is not used if the change is zero"),
-    ("state_variable_filter.c", "sh_fabs(behind[1]) <= SMALL", "it is never exactly 1e-30"),
+    ("state_variable_filter.c", "sh_fabs(behind[2][i]) <= SMALL", "it is never exactly 1e-30"),
     ("ud_factor.c", "if (j <= size) { g[j] = D[j] * f[j];", "D behind the last entry is zero"),
     *(
         ("ud_factor.c", code, "what it sets behind the last one is not used")

@@ -100,16 +100,12 @@ sh_real sh_information_squares(const sh_information *a, const sh_real *beta);
 sh_real sh_information_drift(sh_information *a, const sh_real *v, sh_real c);
 
 /*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
-    requires 0 <= k < SH_MAX_COLUMNS;
-    assigns \result, row[0 .. SH_MAX_COLUMNS + SH_RIGHT_SIDES - 1] \from *a, k, c;
+    requires \initialized(v + (0 .. a->size - 1));
+    assigns \result, row[0 .. SH_MAX_COLUMNS + SH_RIGHT_SIDES - 1]
+            \from *a, v[0 .. SH_MAX_COLUMNS - 1], c;
 */
-sh_real sh_information_drift_sample(const sh_information *a, int k, sh_real c, sh_real *row);
-
-/*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
-    requires \initialized(c + (0 .. a->size - 1));
-    assigns \result, c[0 .. SH_MAX_COLUMNS - 1] \from *a, last_D, c[0 .. SH_MAX_COLUMNS - 1];
-*/
-sh_real sh_information_variance(const sh_information *a, sh_real last_D, sh_real *c);
+sh_real sh_information_drift_sample(const sh_information *a, const sh_real *v, sh_real c,
+                                    sh_real *row);
 
 /*@ requires 1 <= size <= SH_MAX_PARAMETERS;
     assigns P->D[0 .. SH_MAX_ROWS - 1], P->U[0 .. SH_MAX_U - 1], P->work, P->least \from P_0;

@@ -37,7 +37,6 @@ void columns(void)
     last = sh_information_last(&a);
     sh_information_solve(&a, &last, v, c);
     sh_information_variances(&a, last.D, c, v);
-    sh_information_variance(&a, last.D, c);
     sh_information_set_last(&a, &last);
     for (i = 0; i < SH_MAX_COLUMNS; ++i) {
         sh_information_sample(&a, i, x);
@@ -62,7 +61,7 @@ void rows(void)
         a.size = size;
         for (i = 0; i < SH_MAX_COLUMNS; ++i) {
             sh_information_sample(&a, i, x);
-            sh_information_drift_sample(&a, i, any_real(), x);
+            sh_information_drift_sample(&a, v, any_real(), x);
             sh_information_restart(&a, i + 1, any_real());
             sh_information_take_rows(&a, 0, i + 1, x, any_real());
             sh_information_take_rows(&a, i + 1, SH_MAX_COLUMNS, x, any_real());
