@@ -79,7 +79,15 @@ def _ssv(sheet: Sheet, fmu: Fmu, starts: list[_Start], name: str) -> str:
         .render(
             element=name,
             comments=_head(sheet),
-            starts=listed,
+            parameters=[
+                {
+                    "name": s.name,
+                    "type": s.variable.type,
+                    "value": s.item or s.text,
+                    "unit": s.variable.unit,
+                }
+                for s in listed
+            ],
             units=[unit for unit in fmu.description.unitDefinitions if unit.name in units],
         )
     )
