@@ -50,6 +50,16 @@ void sh_information_start(sh_information *a, int size, sh_real precision)
     sh_information_restart(a, size, precision);
 }
 
+void sh_information_copy(sh_information *to, const sh_information *from)
+{
+    const int size = from->size;
+
+    to->size = size;
+    to->squares = from->squares;
+    (void)memcpy(to->D, from->D, sizeof(sh_real) * (size_t)size);
+    (void)memcpy(to->U, from->U, sizeof(sh_real) * (size_t)row_offset(size, size));
+}
+
 void sh_information_restart(sh_information *a, int count, sh_real precision)
 {
     const int rows = count < a->size ? count : a->size;
@@ -282,42 +292,64 @@ void sh_information_forget(sh_information *a, sh_real factor, sh_real least)
     a->squares *= factor;
 }
 
+/* row += D along [1, U_i, z_i], of row i of U from its diagonal on. Returns D along^2. */
+static sh_real add_row(sh_real *row, const sh_real *of_U, int count, sh_real D, sh_real along)
+{
+    const sh_real scaled = D * along;
+    int j;
+
+    row[0] += scaled;
+    for (j = 0; j < count; ++j) {
+        row[1 + j] += scaled * of_U[j];
+    }
+    return scaled * along;
+}
+
+/* -c / (1 + c v' A v); 0 if nothing is known along v, or at an overflow */
+static sh_real weight_of_drift(sh_real vAv, sh_real c)
+{
+    const sh_real variance = sh_fmin(c, SH_LARGEST_GROWTH / vAv);
+
+    return vAv > 0 && isfinite(vAv) ? -variance / (1 + variance * vAv) : 0;
+}
+
 /* In terms of the information A = U' D U, the step is A -= A v v' A c / (1 + c v' A v): a sample of
  * negative weight with the regressor v' A.
  */
-sh_real sh_information_drift_sample(const sh_information *a, const sh_real *v, sh_real c,
-                                    sh_real *row)
+sh_real sh_information_drift(sh_information *a, const sh_real *v, sh_real c)
+{
+    const sh_real *of_U = a->U;
+    sh_real row[SH_MAX_ROW] = {0}, vAv = 0, w, share;
+    int i;
+
+    for (i = 0; i < a->size; ++i) { /* row = v' U' D [U, U z] */
+        const int count = a->size - 1 - i;
+        const sh_real along = v[i] + sh_sum_of_products(of_U, v + i + 1, count);
+
+        vAv += add_row(row + i, of_U, count + SH_RIGHT_SIDES, a->D[i], along);
+        of_U += count + SH_RIGHT_SIDES;
+    }
+    w = weight_of_drift(vAv, c);
+    share = 1 + w * sh_sum_of_products(row, v, a->size);
+    (void)sh_information_take(a, row, w);
+    return share;
+}
+
+sh_real sh_information_drift_sample(const sh_information *a, int k, sh_real c, sh_real *row)
 {
     const int size = a->size;
     const sh_real *of_U = a->U;
-    sh_real vAv = 0, variance;
-    int i, j;
+    sh_real vAv = 0;
+    int i;
 
     for (i = 0; i < size + SH_RIGHT_SIDES; ++i) {
         row[i] = 0;
     }
-    for (i = 0; i < size; ++i) { /* row = v' U' D [U, U z] */
-        const int count = size - 1 - i;
-        const sh_real along = v[i] + sh_sum_of_products(of_U, v + i + 1, count);
-        const sh_real scaled = a->D[i] * along;
+    for (i = 0; i < size && i <= k; ++i) { /* v is 1 at k alone */
+        const int count = size - 1 - i + SH_RIGHT_SIDES;
 
-        vAv += scaled * along;
-        row[i] += scaled;
-        for (j = 0; j < count + SH_RIGHT_SIDES; ++j) {
-            row[i + 1 + j] += scaled * of_U[j];
-        }
-        of_U += count + SH_RIGHT_SIDES;
+        vAv += add_row(row + i, of_U, count, a->D[i], i < k ? of_U[k - i - 1] : 1);
+        of_U += count;
     }
-    variance = sh_fmin(c, SH_LARGEST_GROWTH / vAv);
-    return vAv > 0 && isfinite(vAv) ? -variance / (1 + variance * vAv) : 0;
-}
-
-sh_real sh_information_drift(sh_information *a, const sh_real *v, sh_real c)
-{
-    sh_real row[SH_MAX_ROW] = {0};
-    const sh_real w = sh_information_drift_sample(a, v, c, row);
-    const sh_real share = 1 + w * sh_sum_of_products(row, v, a->size);
-
-    (void)sh_information_take(a, row, w);
-    return share;
+    return weight_of_drift(vAv, c);
 }

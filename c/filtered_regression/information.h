@@ -19,6 +19,9 @@
  */
 void sh_information_start(sh_information *a, int size, sh_real precision);
 
+/* Copies the rows that are used, which may be few of those that there is room for. */
+void sh_information_copy(sh_information *to, const sh_information *from);
+
 /* Starts again with the first parameters: they get the estimate 0 and the precision. What the samples say about
  * the others, if the first ones are not known, stays.
  *
@@ -99,10 +102,9 @@ void sh_information_forget(sh_information *a, sh_real factor, sh_real least);
  */
 sh_real sh_information_drift(sh_information *a, const sh_real *v, sh_real c);
 
-/* The same without taking it: sets the row [size: size + SH_RIGHT_SIDES] of a sample. Returns its weight, <= 0, with
- * which sh_information_take makes the step; 0 if nothing is known along v, or at an overflow.
+/* The same for parameter k alone, without taking it: sets the row [size: size + SH_RIGHT_SIDES] of a sample. Returns
+ * its weight, <= 0, with which sh_information_take lets the parameter change.
  */
-sh_real sh_information_drift_sample(const sh_information *a, const sh_real *v, sh_real c,
-                                    sh_real *row);
+sh_real sh_information_drift_sample(const sh_information *a, int k, sh_real c, sh_real *row);
 
 #endif

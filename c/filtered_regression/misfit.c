@@ -237,10 +237,7 @@ static void judge_drift(sh_regression_state *state)
 void sh_drift_step(sh_refit *refit, sh_information *a, int column, sh_real variance, int step)
 {
     if (step % 2 == 0) {
-        sh_real unit[SH_MAX_COLUMNS] = {0};
-
-        unit[column] = 1;
-        refit->w = sh_information_drift_sample(a, unit, variance, refit->x);
+        refit->w = sh_information_drift_sample(a, column, variance, refit->x);
     } else {
         if (refit->w < 0) {
             (void)sh_information_take(a, refit->x, refit->w);

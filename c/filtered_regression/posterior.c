@@ -1,8 +1,20 @@
 /* What is known of the coefficients: their prior, and the data weighted by the misfit. The noise in columns is
  * removed from the information (details 7 and 14).
  */
+#include <string.h>
+
 #include "constants.h"
 #include "regression.h"
+
+void sh_posterior_copy(sh_posterior *to, const sh_posterior *from)
+{
+    sh_information_copy(&to->information, &from->information);
+    (void)memcpy(to->column, from->column, sizeof to->column);
+    to->weight = from->weight;
+    to->surplus = from->surplus;
+    to->removed = from->removed;
+    to->spread = from->spread;
+}
 
 sh_real sh_posterior_take(sh_posterior *posterior, const sh_real *x, int size, sh_real w)
 {

@@ -224,7 +224,7 @@ static int end_step(sh_regression_state *state, const sh_parameters *p, int step
     } else if (step == 0) {
         remove_noise(state, p);
     } else if (step == 1 && !is_trial) {
-        state->posterior = refit->posterior;
+        sh_posterior_copy(&state->posterior, &refit->posterior);
     } else if (step == 2 && !is_trial) {
         sh_posterior_estimate(state, p->prior.B);
         news = SH_NEW_COEFFICIENTS;

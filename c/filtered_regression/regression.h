@@ -186,6 +186,8 @@ int sh_noise_contradicts_rest(sh_regression_state *state, const sh_parameters *p
 
 /* ---- posterior.c: prior and data, which are weighted by the misfit ------------------------ */
 
+void sh_posterior_copy(sh_posterior *to, const sh_posterior *from);
+
 /* Takes a row x of all columns [size: size], then the right-hand sides, of the weight w times the weight of the
  * posterior. Returns 1 / (1 + rho), where rho is the variance of the prediction over the one of the row.
  */

@@ -79,27 +79,20 @@ void sh_filters_rest(sh_filters *filters, int count)
     }
 }
 
-static sh_real output_of(const sh_filters *filters, int i)
+void sh_filters_read(const sh_filters *restrict filters, const sh_filter_design *design,
+                     sh_filtered *restrict filtered)
 {
-    return filters->input[i] - filters->behind[2][i];
-}
-
-static sh_real second_of(const sh_filters *filters, const sh_filter_design *design, int i)
-{
-    return design->w * design->w *
-           (2 * filters->behind[1][i] - filters->behind[0][i] - filters->behind[2][i]);
-}
-
-void sh_filters_read(const sh_filters *filters, const sh_filter_design *design,
-                     sh_filtered *filtered)
-{
+    const sh_real w = design->w;
     int i;
 
     /*@ loop unroll SH_FILTERS; */
     for (i = 0; i < SH_FILTERS; ++i) {
-        filtered->output[i] = output_of(filters, i);
-        filtered->first[i] = design->w * (filters->behind[2][i] - filters->behind[1][i]);
-        filtered->second[i] = second_of(filters, design, i);
+        const sh_real d0 = filters->behind[0][i], d1 = filters->behind[1][i];
+        const sh_real d2 = filters->behind[2][i];
+
+        filtered->output[i] = filters->input[i] - d2;
+        filtered->first[i] = w * (d2 - d1);
+        filtered->second[i] = w * w * (2 * d1 - d0 - d2);
     }
 }
 
@@ -108,6 +101,7 @@ void sh_state_variable_filter_noise(const sh_filter_design *design, sh_real rows
 {
     const sh_real last = rows * (sh_real)K + 3 + sh_floor(60 / (design->w * design->T));
     sh_filters one;
+    const sh_real w = design->w;
     sh_real energy = 0;
     int k;
 
@@ -119,8 +113,9 @@ void sh_state_variable_filter_noise(const sh_filter_design *design, sh_real rows
 
         sh_filters_step(&one, design, 0, &h, 1);
         energy += sh_square(h);
-        *gain += sh_square(output_of(&one, 0));
-        *gain_second += sh_square(second_of(&one, design, 0));
+        *gain += sh_square(one.input[0] - one.behind[2][0]);
+        *gain_second +=
+            sh_square(w * w * (2 * one.behind[1][0] - one.behind[0][0] - one.behind[2][0]));
     }
     *gain /= energy;
     *gain_second /= energy;

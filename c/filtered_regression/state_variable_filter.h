@@ -31,8 +31,8 @@ void sh_filters_step(sh_filters *restrict filters, const sh_filter_design *desig
 void sh_filters_rest(sh_filters *filters, int count);
 
 /* Sets the signals behind the filters. */
-void sh_filters_read(const sh_filters *filters, const sh_filter_design *design,
-                     sh_filtered *filtered);
+void sh_filters_read(const sh_filters *restrict filters, const sh_filter_design *design,
+                     sh_filtered *restrict filtered);
 
 /* Window h = 16 x^2 (1 - x)^2 at row k of a block of so many rows; 1 for a row alone. */
 static inline sh_real sh_window(sh_real k, sh_real rows)

@@ -62,9 +62,8 @@ class Signals:
     def __getitem__(self, kept: slice) -> Signals:
         """Some of the samples."""
         signals = {each.name: getattr(self, each.name) for each in fields(self)}
-        return replace(
-            self, **{name: x[kept] for name, x in signals.items() if isinstance(x, np.ndarray)}
-        )
+        arrays = {name: x[kept] for name, x in signals.items() if isinstance(x, np.ndarray)}
+        return replace(self, **arrays, held=self.held)
 
 
 class Stribeck(NamedTuple):

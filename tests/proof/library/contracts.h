@@ -49,6 +49,13 @@ sh_real sh_information_predict(const sh_information *a, sh_real *x, sh_real w);
 */
 void sh_information_start(sh_information *a, int size, sh_real precision);
 
+/*@ requires 1 <= from->size <= SH_MAX_COLUMNS;
+    assigns to->size, to->squares, to->D[0 .. SH_MAX_COLUMNS - 1], to->U[0 .. SH_MAX_TRIANGLE - 1]
+            \from *from;
+    ensures 1 <= to->size <= SH_MAX_COLUMNS;
+*/
+void sh_information_copy(sh_information *to, const sh_information *from);
+
 /*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
     requires 0 <= count <= SH_MAX_COLUMNS;
     assigns a->D[0 .. SH_MAX_COLUMNS - 1], a->U[0 .. SH_MAX_TRIANGLE - 1] \from *a, count, precision;
@@ -100,12 +107,10 @@ sh_real sh_information_squares(const sh_information *a, const sh_real *beta);
 sh_real sh_information_drift(sh_information *a, const sh_real *v, sh_real c);
 
 /*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
-    requires \initialized(v + (0 .. a->size - 1));
-    assigns \result, row[0 .. SH_MAX_COLUMNS + SH_RIGHT_SIDES - 1]
-            \from *a, v[0 .. SH_MAX_COLUMNS - 1], c;
+    requires 0 <= k < SH_MAX_COLUMNS;
+    assigns \result, row[0 .. SH_MAX_COLUMNS + SH_RIGHT_SIDES - 1] \from *a, k, c;
 */
-sh_real sh_information_drift_sample(const sh_information *a, const sh_real *v, sh_real c,
-                                    sh_real *row);
+sh_real sh_information_drift_sample(const sh_information *a, int k, sh_real c, sh_real *row);
 
 /*@ requires 1 <= size <= SH_MAX_PARAMETERS;
     assigns P->D[0 .. SH_MAX_ROWS - 1], P->U[0 .. SH_MAX_U - 1], P->work, P->least \from P_0;

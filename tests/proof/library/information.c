@@ -42,6 +42,7 @@ void columns(void)
         sh_information_sample(&a, i, x);
     }
     sh_information_start(&b, SH_MAX_COLUMNS, any_real());
+    sh_information_copy(&b, &a);
     //@ assert guards: !\initialized(&a.guard_D[0]) && !\initialized(&a.guard_U[0]);
     //@ assert guards: !\initialized(&b.guard_D[0]) && !\initialized(&b.guard_U[0]);
 }
@@ -61,7 +62,7 @@ void rows(void)
         a.size = size;
         for (i = 0; i < SH_MAX_COLUMNS; ++i) {
             sh_information_sample(&a, i, x);
-            sh_information_drift_sample(&a, v, any_real(), x);
+            sh_information_drift_sample(&a, i, any_real(), x);
             sh_information_restart(&a, i + 1, any_real());
             sh_information_take_rows(&a, 0, i + 1, x, any_real());
             sh_information_take_rows(&a, i + 1, SH_MAX_COLUMNS, x, any_real());
