@@ -141,15 +141,19 @@ static void read_coefficients(const sh_regression_state *state, const sh_paramet
 }
 
 /* Why the estimate is not confident. The misfit widens sigma_std, so it has a limit of its own for few blocks only: then
- * the columns that may explain it have not all been tried.
+ * the columns that may explain it have not all been tried. And c' P c counts 1 + 10/N times, because N blocks hardly show
+ * whether the model holds.
  */
 static int doubt_of(const sh_regression_state *state, const sh_parameters *p,
                     const sh_estimate *estimate)
 {
-    const sh_real phi = sh_fabs(estimate->phi);
+    const sh_real phi = sh_fabs(estimate->phi), N = sh_fmax(state->blocks.count, 1);
+    const sh_real unjudged =
+        p->regression.memory > 0 ? state->variances.second * SH_UNJUDGED_BLOCKS / N : 0;
     int doubt = SH_DOUBT_NONE;
 
-    if (!(estimate->sigma_std < p->limit.relative_std * sh_fabs(estimate->sigma))) {
+    if (!(sh_square(estimate->sigma_std) + unjudged <
+          sh_square(p->limit.relative_std * estimate->sigma))) {
         doubt = state->variance_factor > SH_CONTRADICTION ? SH_DOUBT_MISFIT : SH_DOUBT_NOT_EXCITED;
     }
     if (p->regression.memory > 0 && state->blocks.count < SH_UNTRIED_BLOCKS &&

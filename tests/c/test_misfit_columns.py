@@ -181,20 +181,20 @@ def test_data_that_contradict_the_model_are_a_doubt(c: Library) -> None:
 
 
 def test_the_first_misfit_is_a_doubt(c: Library) -> None:
-    """GIVEN a misfit from the first sample on, or none, THEN from 0.5 to 1.4 s only the joint
+    """GIVEN a misfit from the first sample on, or none, THEN from 0.6 to 1.4 s only the joint
     without a misfit is confident."""
     joint = Joint(duration=1.4, deformation=0.01)
     clean, contradicted = joint.measurements(), joint.measurements()
     contradicted[:, 3] += 0.02 * np.sin(3 * 50 * joint.motion[0])
     values = {"method": 2, "rls.n": 3}
     found = Estimator(c, values).run(clean)
-    assert np.all(found["confident"][500:])
+    assert np.all(found["confident"][600:])
     found = Estimator(c, values).run(contradicted)
-    assert not np.any(found["confident"][500:])
+    assert not np.any(found["confident"][600:])
     assert found["doubt"][-1] == c.lib.SH_DOUBT_MISFIT
     assert found["sigma_std"][-1] < 0.1 * found["sigma"][-1]
     found = Estimator(c, {**values, "regression.memory": 0.0}).run(contradicted)
-    assert np.all(found["confident"][500:])  # the misfit is switched off
+    assert np.all(found["confident"][600:])  # the misfit is switched off
 
 
 @pytest.mark.parametrize(("n", "times"), [(1, 32), (2, 32 ** (1 / 3)), (3, 2), (4, 2)])
