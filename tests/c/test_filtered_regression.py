@@ -107,7 +107,7 @@ def test_the_error_agrees_with_the_standard_deviation(c: Library, prior_B: float
 
 
 def test_confident_compares_the_standard_deviation_with_the_threshold(c: Library) -> None:
-    """The variance of N blocks of 50 ms counts 1 + 10/N times; the first two may not be complete."""
+    """The variance of N blocks of 50 ms counts 1 + 10/N times; the first two may be partial."""
     joint = Joint(duration=4.0)
     values = {**REGRESSION, "limit.relative_std": 0.05, "prior.torque_gain": 0.0}
     found = Estimator(c, values).run(joint.measurements())

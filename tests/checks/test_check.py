@@ -17,6 +17,7 @@ from checked_logs import (
     joint_log,
     knee_log,
     log_by_hand,
+    log_under_gravity,
 )
 from command_line import Shell
 from recorded_logs import CONFIGURATION, awas_log, configured, in_memory, write_log
@@ -101,6 +102,19 @@ def test_a_wrong_gear_ratio_is_named_if_a_hand_moves_the_link(gear: float, hold:
     assert wrong(log, right) == []
     first = wrong(log, right.replace("gear_ratio = 100", f"gear_ratio = {gear}"))[0]
     assert (first.key, first.proposed) == ("ports.theta.gear_ratio", 100.0)
+
+
+def test_counts_and_a_gear_ratio_that_explain_the_same_are_both_named() -> None:
+    half = RIGHT.replace("gear_ratio = 100", "gear_ratio = 50").replace("gamma = 100", "gamma = 50")
+    first = wrong(knee_log(), half)[0]
+    assert (first.key, first.proposed) == ("ports.theta.counts_per_turn", 8192.0)
+    assert dict(first.others)["ports.theta.gear_ratio"] == 100.0
+
+
+@pytest.mark.parametrize("right", [RIGHT, EVEN_POWERS])
+@pytest.mark.parametrize("change", [0.0, 1.0])
+def test_a_stiffness_that_doubles_is_no_gear_ratio(change: float, right: str) -> None:
+    assert wrong(log_under_gravity(change), right) == []
 
 
 def test_a_gear_ratio_upside_down_is_no_swap_of_columns_in_one_unit() -> None:

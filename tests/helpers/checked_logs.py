@@ -110,21 +110,44 @@ def knee_log() -> Mapping[str, Array]:
     return {**log, "late_current": np.concatenate([np.full(10, current[0]), current[:-10]])}
 
 
+def _sines(amplitude: float) -> tuple[Array, Array, Array, Array]:
+    """20 s at 1 kHz: times, a position and its derivatives [rad, s]."""
+    t = times(1e-3, 20.0)
+    waves = [(amplitude / n, 2 * np.pi * f) for n, f in enumerate((0.23, 0.61, 1.07), 1)]
+    theta = np.sum([A * np.sin(w * t) for A, w in waves], axis=0)
+    velocity = np.sum([A * w * np.cos(w * t) for A, w in waves], axis=0)
+    return t, theta, velocity, np.sum([-A * w**2 * np.sin(w * t) for A, w in waves], axis=0)
+
+
+def _motor_torque(velocity: Array, acceleration: Array) -> Array:
+    """Torque of inertia and friction of the knee's motor [N.m]."""
+    friction = KNEE["motor.D_theta"] * GEAR * velocity
+    friction += KNEE["motor.tau_coulomb"] * np.tanh(velocity / 0.02)
+    return KNEE["motor.B"] * GEAR * acceleration + friction
+
+
 def log_by_hand(hold: float) -> Mapping[str, Array]:
     """The knee, moved by a hand, in closed form: the motion of the motor, then (1) and (3) for q.
 
     hold  stiffness with which the drive holds the motor at 0, as a part of that of the spring [1];
           0 for a drive without current
     """
-    t = times(1e-3, 20.0)
-    waves = [(0.3 / n, 2 * np.pi * f) for n, f in enumerate((0.23, 0.61, 1.07), 1)]
-    theta = np.sum([A * np.sin(w * t) for A, w in waves], axis=0)
-    velocity = np.sum([A * w * np.cos(w * t) for A, w in waves], axis=0)
-    acceleration = np.sum([-A * w**2 * np.sin(w * t) for A, w in waves], axis=0)
+    t, theta, velocity, acceleration = _sines(0.3)
     K = KNEE["spring.k_1"]
     tau = -hold * K * (theta + 0.02 * velocity) / GEAR
-    friction = KNEE["motor.D_theta"] * GEAR * velocity
-    friction += KNEE["motor.tau_coulomb"] * np.tanh(velocity / 0.02)
-    tau_e = GEAR * (KNEE["motor.B"] * GEAR * acceleration + friction - tau)
+    tau_e = GEAR * (_motor_torque(velocity, acceleration) - tau)
     noise = 1e-5 * np.random.default_rng(1).standard_normal(len(t))
     return as_recorded({"t": t, "theta": theta, "q": theta + tau_e / K, "tau": tau + noise})
+
+
+def log_under_gravity(change: float) -> Mapping[str, Array]:
+    """The knee with a weight, in slow motion, in closed form. Its stiffness changes at 8 s.
+
+    change  of the stiffness, relative: 1 doubles it
+    """
+    t, theta, velocity, acceleration = _sines(0.4)
+    load = 12.0 * np.sin(theta) + acceleration  # of a weight and 1 kg.m2, on the spring [N.m]
+    K = KNEE["spring.k_1"] * np.where(t < 8.0, 1.0, 1.0 + change)
+    tau = _motor_torque(velocity, acceleration) + load / GEAR
+    noise = 1e-3 * np.random.default_rng(1).standard_normal(len(t))
+    return as_recorded({"t": t, "theta": theta, "q": theta - load / K, "tau": tau + noise})

@@ -88,9 +88,10 @@ def _gear(seen: View, found: Fitted) -> Finding | None:
     error = motor.gear_error(seen, found.form)
     if error is None or not abs(error.value - 1) > error.half_width + _LEAST_GEAR:
         return None
-    # An asymmetric spring, or a wrong zero, must not explain the torque as well.
-    others = min(found.fit.error, with_all_powers(seen, found.form).error)
-    if not error.fit.error < _MUCH * others:
+    # An asymmetric spring, a wrong zero, or a spring that changes, must not explain it as well.
+    others = [each.error for each in (found.fit, with_all_powers(seen, found.form))]
+    others.append(motor.in_parts(seen, found.form))
+    if not all(error.fit.error < _MUCH * each for each in others if math.isfinite(each)):
         return None
     change = gear_of(seen.configuration.ports["theta"], error.value, error.half_width)
     slope = 1 / error.value

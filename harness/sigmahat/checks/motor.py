@@ -21,6 +21,8 @@ from sigmahat.logs.log import Array
 LINEAR = "eta[0,0]"  # the column of the linear spring in a symmetric polynomial
 _SLOWEST = 0.1  # [s] between ticks: a slower log does not show the motion of a joint
 _ORDERS = 3
+_PARTS = 8  # of a log, in each of which a spring may be another one
+_SPARE = 6  # blocks of a part beyond its columns
 _STEPS = 4  # of Newton's method for the delay
 LONGEST = 0.1  # largest delay [s]
 _BETTER = 0.7
@@ -151,6 +153,17 @@ def explains(before: Fit, after: Fit) -> bool:
 
 def with_all_powers(seen: View, form: Form) -> Fit:
     return fit(_chosen(seen, replace(form, n=_ORDERS).with_all_powers())[1])
+
+
+def in_parts(seen: View, form: Form) -> float:
+    """Sum of the squared errors if each part of the log may have another spring and friction.
+
+    Without the part with the largest errors, in which the spring may change.
+    """
+    system = _equations(seen, form)
+    number = min(_PARTS, len(system.rows) // (len(system.names) + _SPARE))
+    errors = [fit(each).error for each in system.parts(max(number, 2))]
+    return sum(errors) - max(errors)
 
 
 def _chosen(seen: View, form: Form) -> tuple[Form, Equations]:

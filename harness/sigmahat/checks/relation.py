@@ -107,14 +107,13 @@ def _scale(here: Relation, slope: Slope) -> Relation:
         for change in changes(name, ports[name], here.seen.gamma)
         if distance(change.on_theta, size) < _LIKE
     ]
-    best = _likely(here.seen, slope)
-    if best is None:
-        best = _by_torque(here, slope, [_refined(here.seen, size), *near])
+    gear = _refined(here.seen, size)
+    best = _likely(here.seen, slope) or _by_torque(here, slope, [gear, *near])
     if best is None:
         return here
     others = {
         change.key: change.value
-        for change in near
+        for change in (*near, gear)
         if change.key != best.key and distance(change.on_theta, best.on_theta) < _AS_WELL
     }
     key, listed = best.key, list(others.items())

@@ -23,6 +23,7 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -145,6 +146,14 @@ class Equations:
         i, R = self.names.index(name), self.R.copy()
         R[:, :, -1] -= value * R[:, :, i]
         return replace(self, Zy=self.Zy - value * self.ZX[:, :, i], R=R).without([name])
+
+    def parts(self, number: int) -> list[Equations]:
+        """The same equations, divided into parts of equal duration."""
+        ends = np.linspace(0, len(self.rows), number + 1).astype(int)
+        return [
+            replace(self, ZX=self.ZX[i:k], Zy=self.Zy[i:k], R=self.R[i:k], rows=self.rows[i:k])
+            for i, k in pairwise(ends)
+        ]
 
     def in_parts(self, parts: int) -> Equations:
         """The same equations in fewer, longer blocks."""
