@@ -163,8 +163,8 @@ void sh_change_judge(sh_regression_state *state, const sh_parameters *p, sh_real
     if (state->blocks.count < SH_SHORTEST_PAST) {
         return;
     }
-    if (change->friction_blocks > 1 &&
-        change->blocks > 0) { /* not in the first block of either hypothesis */
+    /* Not in the first block of either hypothesis. */
+    if (change->friction_blocks > 1 && change->blocks > 0) {
         change->preference += sh_fmin(friction / level, SH_LARGEST_EVIDENCE) -
                               sh_fmin(spring / level, SH_LARGEST_EVIDENCE);
     }

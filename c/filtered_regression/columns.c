@@ -51,8 +51,8 @@ int sh_has_nominal_curve(const sh_parameters *p)
 
 /* ---- the table --------------------------------------------------------------------------- */
 
-/* A std deviation of sh_parameters.prior is given in this unit. The last two are 0 without dry friction of the motor, and
- * without a curve rls.eta_0; else 1.
+/* A std deviation of sh_parameters.prior is given in this unit. The last two are 0 without dry friction of the motor,
+ * and without a curve rls.eta_0; else 1.
  */
 enum { ONE, TAU_E, K_0, TAU_C, IF_DRY, IF_CURVE };
 

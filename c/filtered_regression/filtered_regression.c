@@ -47,8 +47,8 @@ static sh_variances variances_at(const sh_regression_state *state, const sh_para
 
 /* tau_e = F' beta, (21), and sigma = dF' beta, (23), with the curve rls.eta_0. To the variances c' P c of both are
  * added (s_g d(c' beta)/dg)^2 with the gain g of the torque (point 8), (share c' beta)^2 with the share by which
- * errors of phi make the stiffness too small (point 5), and what is not known beside a knee [(N.m/rad)2] (point 6). Returns
- * d sigma / dg.
+ * errors of phi make the stiffness too small (point 5), and what is not known beside a knee [(N.m/rad)2] (point 6).
+ * Returns d sigma / dg.
  */
 static sh_real evaluate_at(const sh_regression_state *state, const sh_parameters *p,
                            const sh_joint_point *at, const sh_variances *variances, sh_real knees,
@@ -140,9 +140,9 @@ static void read_coefficients(const sh_regression_state *state, const sh_paramet
     }
 }
 
-/* Why the estimate is not confident. The misfit widens sigma_std, so it has a limit of its own for few blocks only: then
- * the columns that may explain it have not all been tried. And c' P c counts 1 + 10/N times, because N blocks hardly show
- * whether the model holds.
+/* Why the estimate is not confident. The misfit widens sigma_std, so it has a limit of its own for few blocks only:
+ * then the columns that may explain it have not all been tried. And c' P c counts 1 + 10/N times, because N blocks
+ * hardly show whether the model holds.
  */
 static int doubt_of(const sh_regression_state *state, const sh_parameters *p,
                     const sh_estimate *estimate)
@@ -326,6 +326,26 @@ static int take_sample(sh_regression_state *state, const sh_parameters *p, const
     return 1;
 }
 
+/* Weight 1 / R of the row x [size: count]; 0 if the numbers are too large. */
+static sh_real weight_of(const sh_row_noise *noise, const sh_real *x, int count)
+{
+    const sh_real w = 1 / noise->R;
+
+    return w > 0 && w * sh_sum_of_products(x, x, count) <= SH_LARGE ? w : 0;
+}
+
+/* epsilon = y - x' beta, without the share of it that is noise of the torque: the column of the motor's torque contains
+ * this noise, too, and loses it (detail 14).
+ */
+static sh_real predict(const sh_regression_state *state, const sh_row_noise *noise, sh_real *x,
+                       sh_column_noise *left)
+{
+    const int size = state->columns.size;
+    const sh_real epsilon = x[size + SH_RIGHT_Y] - sh_sum_of_products(x, state->beta, size);
+
+    return epsilon - sh_columns_remove_noise(state, noise, epsilon, x, left);
+}
+
 /* Updates what is noise in columns: of b (detail 7), of the torque (14), and of the spring (point 5). */
 static void update_noise(sh_regression_state *state, const sh_parameters *p,
                          const sh_column_noise *left, sh_real w)
@@ -353,20 +373,17 @@ static void update_noise(sh_regression_state *state, const sh_parameters *p,
 /* Takes a complete row, steps 3 to 5 of the tick. Returns 0 if its numbers are too large. */
 static int use_row(sh_regression_state *state, const sh_parameters *p, const sh_row_noise *noise)
 {
-    const int size = state->columns.size, count = size + SH_RIGHT_SIDES;
+    const int size = state->columns.size;
     sh_row *row = &state->row;
     sh_column_noise left;
     sh_real share; /* 1 / (1 + rho) */
 
-    row->w = 1 / noise->R; /* 3. Weigh it. */
+    row->w = weight_of(noise, row->x, size + SH_RIGHT_SIDES); /* 3. Weigh it. */
     row->lasting = noise->lasting;
-    if (!(row->w > 0 && row->w * sh_sum_of_products(row->x, row->x, count) <= SH_LARGE)) {
-        row->w = 0;
+    if (!(row->w > 0)) {
         return 0;
     }
-    row->epsilon = row->x[size + SH_RIGHT_Y] - sh_sum_of_products(row->x, state->beta, size);
-    /* 4. Predict and compare. */
-    row->epsilon -= sh_columns_remove_noise(state, noise, row->epsilon, row->x, &left);
+    row->epsilon = predict(state, noise, row->x, &left); /* 4. Predict and compare. */
     share = sh_posterior_take(&state->posterior, row->x, size, row->w); /* 5. Update. */
     row->rho = share > 0 ? sh_limited((1 - share) / share, SH_LARGEST_OUTPUT) : SH_LARGEST_OUTPUT;
     update_noise(state, p, &left, row->w);

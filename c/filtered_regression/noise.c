@@ -91,7 +91,7 @@ sh_row_noise sh_noise_of_row(const sh_regression_state *state, const sh_paramete
     return noise;
 }
 
-/* V_phi = G_0 (count^2 + count_q^2)/12 + (0.035 prior.eccentric)^2: the harmonics are slow, so the filter leaves them */
+/* V_phi = G_0 (count^2 + count_q^2)/12 + (0.035 prior.eccentric)^2. The filter leaves harmonics as they are. */
 sh_real sh_noise_of_deformation(const sh_signals *signals, const sh_parameters *p)
 {
     return signals->gain * counts_squared(signals) / 12 +
