@@ -108,7 +108,7 @@ static void adopt(sh_regression_state *state, const sh_parameters *p)
     sh_information_start(&blocks->recent, state->columns.size, 1);
     blocks->recent_count = 0;
     state->data = blocks->drifting;
-    state->surplus = state->spread = state->rounding = 0;
+    state->surplus = state->spread = state->weights = 0;
     state->noise.information = state->noise.gain = 0;
     state->refit.trial = 0;
     sh_refit_begin(state, p);

@@ -57,6 +57,8 @@
  * With 0.025 stiff joints under a free inertia are confident and wrong.
  */
 #define SH_HARMONICS ((sh_real)0.035)
+/* Largest change by such errors, in std deviations [1]. */
+#define SH_LARGEST_PULL ((sh_real)2)
 
 /* ---- noise in columns, columns.c and posterior.c ----------------------------------------- */
 

@@ -45,16 +45,30 @@ static sh_variances variances_at(const sh_regression_state *state, const sh_para
                                   state->columns.spring);
 }
 
+/* By the share v sum V_phi/R, errors of phi make a value too small (point 5). Those that repeat with the position change
+ * it by at most two std deviations: by more, they would also change columns of the motor beyond their priors.
+ *
+ * value     times v sum 1/R
+ * variance  of the value
+ */
+static sh_real of_errors(const sh_regression_state *state, const sh_parameters *p, sh_real value,
+                         sh_real variance)
+{
+    const sh_real harmonics = sh_square(SH_HARMONICS * p->prior.eccentric);
+
+    return sh_square(sh_noise_of_deformation(&state->signals) * value) +
+           sh_fmin(sh_square(harmonics * value), sh_square(SH_LARGEST_PULL) * variance);
+}
+
 /* tau_e = F' beta, (21), and sigma = dF' beta, (23), with the curve rls.eta_0. To the variances c' P c of both are
- * added (s_g d(c' beta)/dg)^2 with the gain g of the torque (point 8), (share c' beta)^2 with the share by which
- * errors of phi make the stiffness too small (point 5), and what is not known beside a knee [(N.m/rad)2] (point 6).
- * Returns d sigma / dg.
+ * added (s_g d(c' beta)/dg)^2 with the gain g of the torque (point 8), what errors of phi may change (point 5), and what
+ * is not known beside a knee [(N.m/rad)2] (point 6). Returns d sigma / dg.
  */
 static sh_real evaluate_at(const sh_regression_state *state, const sh_parameters *p,
                            const sh_joint_point *at, const sh_variances *variances, sh_real knees,
                            sh_point *point)
 {
-    const sh_real share = state->rounding * state->posterior.weight * variances->second;
+    const sh_real share = state->weights * state->posterior.weight * variances->second;
     const sh_real gain = p->prior.torque_gain;
     const int count = state->columns.spring;
     sh_real torque, torque_per_gain, stiffness, stiffness_per_gain;
@@ -64,10 +78,12 @@ static sh_real evaluate_at(const sh_regression_state *state, const sh_parameters
                        &stiffness_per_gain);
     point->tau_e = at->tau_nominal + torque;
     point->sigma = at->sigma_nominal + stiffness;
-    point->tau_e_std = sh_std_deviation(variances->first + sh_square(gain * torque_per_gain) +
-                                        sh_square(share * point->tau_e));
-    point->sigma_std = sh_std_deviation(variances->second + sh_square(gain * stiffness_per_gain) +
-                                        sh_square(share * point->sigma) + knees);
+    point->tau_e_std =
+        sh_std_deviation(variances->first + sh_square(gain * torque_per_gain) +
+                         of_errors(state, p, share * point->tau_e, variances->first));
+    point->sigma_std =
+        sh_std_deviation(variances->second + sh_square(gain * stiffness_per_gain) +
+                         of_errors(state, p, share * point->sigma, variances->second) + knees);
     return stiffness_per_gain;
 }
 
@@ -356,7 +372,7 @@ static void update_noise(sh_regression_state *state, const sh_parameters *p,
 
     state->noise.information += sh_limited(left->information * w, SH_LARGE);
     state->noise.gain += sh_limited(left->gain * w, SH_LARGE);
-    state->rounding += sh_limited(sh_noise_of_deformation(&state->signals, p) * w, SH_LARGE);
+    state->weights += sh_limited(w, SH_LARGE);
     if (!(p->prior.B > 0)) {
         return;
     }

@@ -282,13 +282,13 @@ static void forget_data(sh_regression_state *state, const sh_parameters *p, sh_r
     forget_blocks(blocks, factor);
     state->surplus *= factor;
     state->spread *= factor * factor;
-    state->rounding *= factor;
+    state->weights *= factor;
     state->noise.information *= factor;
     state->noise.gain *= factor;
 }
 
 /* P += drift time / (v'v + R) v v', where v are the columns of the curve in the last row and R is its
- * variance. The rounding of phi is a part of the information along v, and is lost as the rest of it.
+ * variance. The errors of phi are a part of the information along v, and are lost as the rest of it.
  */
 static void let_curve_drift(sh_regression_state *state, const sh_parameters *p, sh_real time)
 {
@@ -302,7 +302,7 @@ static void let_curve_drift(sh_regression_state *state, const sh_parameters *p, 
     if (power > 0) {
         const sh_real variance = p->regression.drift * time / (power + 1 / state->row.w);
 
-        state->rounding *= sh_information_drift(&state->data, v, variance);
+        state->weights *= sh_information_drift(&state->data, v, variance);
         (void)sh_information_drift(&state->blocks.constant, v, variance);
         (void)sh_information_drift(&state->blocks.drifting, v, variance);
     }

@@ -91,11 +91,10 @@ sh_row_noise sh_noise_of_row(const sh_regression_state *state, const sh_paramete
     return noise;
 }
 
-/* V_phi = G_0 (count^2 + count_q^2)/12 + (0.035 prior.eccentric)^2. The filter leaves harmonics as they are. */
-sh_real sh_noise_of_deformation(const sh_signals *signals, const sh_parameters *p)
+/* G_0 (count^2 + count_q^2)/12 */
+sh_real sh_noise_of_deformation(const sh_signals *signals)
 {
-    return signals->gain * counts_squared(signals) / 12 +
-           sh_square(SH_HARMONICS * p->prior.eccentric);
+    return signals->gain * counts_squared(signals) / 12;
 }
 
 /* N R = (gamma^2 B prior.B)^2 G V. V is a mean over samples: of the squared fourth difference / 70, but of

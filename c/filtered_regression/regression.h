@@ -174,10 +174,10 @@ sh_real sh_noise_of_theta(sh_regression_state *state, const sh_parameters *p);
 /* Detail 4: variance of a row, with the noise of theta as the last samples show it. */
 sh_row_noise sh_noise_of_row(const sh_regression_state *state, const sh_parameters *p);
 
-/* R times the information in a row that is only errors of the encoders: about sigma (point 5) [rad2], about b
- * (detail 7) [(N.m)2].
+/* R times the information in a row that is only rounding: about sigma (point 5) [rad2], about b (detail 7)
+ * [(N.m)2].
  */
-sh_real sh_noise_of_deformation(const sh_signals *signals, const sh_parameters *p);
+sh_real sh_noise_of_deformation(const sh_signals *signals);
 sh_real sh_noise_of_inertia(const sh_regression_state *state, const sh_parameters *p);
 
 /* Whether the newest row shows that the motor was not at rest at the start (detail 12). */

@@ -303,8 +303,7 @@ typedef struct {
     sh_change change;
     sh_real surplus, spread; /* of all samples, see sh_posterior */
     sh_column_noise noise;   /* of all samples */
-    sh_real rounding;        /* information about sigma that is only errors of phi, of all samples
-                                [(rad/N.m)2] */
+    sh_real weights;         /* sum of the weights of all samples [1/(N.m)2] */
     sh_real misfit,
         variance_factor;  /* reduced chi-square of the blocks, factor of the variances [1] */
     sh_real friction_std; /* of the relative error of viscous friction, at the last refit [1] */

@@ -235,7 +235,7 @@ class Oracle:
         self.blocks = Blocks(n, self.w, self.T, self.K)
         self.full = np.zeros(0, np.longdouble), 1.0, 0.0  # mean, variance and count of a full block
         self.q = self.factor = 1.0
-        self.surplus = self.spread = self.rounding = self.recent_q = 0.0
+        self.surplus = self.spread = self.weights = self.recent_q = 0.0
         self.of_drive = np.zeros(2)
         self.trial = self.last_trial = 0
         self.since = self.pause = self.epsilon = self.rho = 0.0
@@ -447,12 +447,12 @@ class Oracle:
             self.surplus *= keep
             self.spread *= keep**2
             self.of_drive *= keep
-            self.rounding *= keep
+            self.weights *= keep
         v = np.where([kind in CURVE for kind in self.kinds], self.before[: self.n], 0)
         power = v @ v
         if drift > 0 and power > 0:
             variance = drift * time / (power + self.R)
-            self.rounding /= 1 + variance * float(v @ self.data.matrix[: self.n, : self.n] @ v)
+            self.weights /= 1 + variance * float(v @ self.data.matrix[: self.n, : self.n] @ v)
             for sums in everything:
                 sums.walk(v, variance)
 
@@ -488,8 +488,7 @@ class Oracle:
         at = k - filtered.run.start
         R, last, share = self.noise_of_row(filtered, filtered.unknown_f[at])
         self.R, self.before = R, row
-        rounding = self.gain * float(np.sum(self.counts**2)) / 12
-        self.rounding += (rounding + (0.035 * self.p["prior.eccentric"]) ** 2) / R
+        self.weights += 1 / R
         if "DRIVE" in self.kinds and not filtered.measured and row[-SIDES] != 0:
             self.remove_noise(row, share, R)
         self.has_row = True
@@ -753,12 +752,14 @@ class Oracle:
             self.new_coefficients = False
         longest = 3 * p["prior.delay"]
         self.delay = min(max(of["DELAY"], -longest), longest)
-        attenuation = self.rounding * self.live.weight * variance
+        attenuation = self.weights * self.live.weight * variance
+        rounding = self.gain * float(np.sum(self.counts**2)) / 12
+        harmonics = (0.035 * p["prior.eccentric"]) ** 2
 
         def std(variance: float, by_gain: float, value: float) -> float:
-            return math.hypot(
-                math.sqrt(variance), p["prior.torque_gain"] * by_gain, attenuation * value
-            )
+            own, value = math.sqrt(variance), attenuation * abs(value)
+            pull = min(harmonics * value, 2 * own)
+            return math.hypot(own, p["prior.torque_gain"] * by_gain, rounding * value, pull)
 
         values = {
             "tau_e_std": std(of_tau_e, float(F @ self.by_gain), tau_e),
