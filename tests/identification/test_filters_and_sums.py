@@ -129,3 +129,20 @@ def test_a_motor_that_moves_fast_or_rests_keeps_all_samples() -> None:
     at_rest = replace(piece, theta=np.zeros(len(piece.theta)))
     for moves, count in ((piece, COUNT / 10), (at_rest, COUNT), (piece, 0.0)):
         assert _apart([moves], count) == 1
+
+
+def test_a_torque_that_is_held_acts_half_a_sample_later() -> None:
+    """Of the samples of the log, also where the fit takes each twentieth of them."""
+    B, D_theta, t = 2e-4, 1e-3, T * np.arange(40001)
+    theta = np.sin(5 * t) + 0.3 * np.sin(13 * t)
+    velocity = 5 * np.cos(5 * t) + 3.9 * np.cos(13 * t)
+    acceleration = -25 * np.sin(5 * t) - 50.7 * np.sin(13 * t)
+    phi = 0.02 * np.sin(7 * t + 1)
+    torque = GAMMA * (B * acceleration + D_theta * velocity) - 0.3 * phi
+    held = (torque[:-1] + torque[1:]) / 2  # mean from each sample to the next one
+    log = Signals(theta[:-1], phi[:-1], np.ones(40000), held, None, held=True)
+    for apart in (1, 20):
+        log_of_fit = log.with_acting_torque()[::apart]
+        found = fit(equations([log_of_fit], apart * T, GAMMA, Form(2.0, 5.0))).value
+        assert found["B"] == pytest.approx(B, rel=1e-3)
+        assert found["D_theta"] == pytest.approx(D_theta, rel=1e-3)

@@ -99,7 +99,7 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
     coherent = math.inf if torque_constant else coherent_range(longest, gamma, noise)
     apart = _apart(pieces, count(every))
     h = apart * T
-    thinned = [each[::apart] for each in pieces]
+    thinned = [each.with_acting_torque()[::apart] for each in pieces]
     inertia = _known_inertia(every, configuration)
     f_0 = min(replace(noise, T=h).bandwidth, coherent)
     change, hidden = None, False

@@ -64,7 +64,14 @@ class Signals:
         """Some of the samples."""
         signals = {each.name: getattr(self, each.name) for each in fields(self)}
         arrays = {name: x[kept] for name, x in signals.items() if isinstance(x, np.ndarray)}
-        return replace(self, **arrays, held=self.held)
+        return replace(self, **arrays)
+
+    def with_acting_torque(self) -> Signals:
+        """With the mean of the torque before and behind each sample, if it is held."""
+        if not self.held:
+            return self
+        before = np.append(self.tau[:1], self.tau[:-1])
+        return replace(self, tau=(self.tau + before) / 2, held=False)
 
 
 class Stribeck(NamedTuple):
@@ -220,8 +227,7 @@ def rows(
         part = piece[2 * first : 2 * last]
         velocity = _first(low_pass(part.theta, form.wide, T), T)
         direction = _direction(velocity, form.coulomb_velocity)
-        if part.held:  # a torque that is held is late by half a sample in the mean
-            part = replace(part, tau=(part.tau + np.append(part.tau[:1], part.tau[:-1])) / 2)
+        part = part.with_acting_torque()
         halves = [
             _half(part[half::2], velocity[half::2], direction[half::2], 2 * T, gamma, form, units)
             for half in (0, 1)
