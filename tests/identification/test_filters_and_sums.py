@@ -10,7 +10,16 @@ from recorded_logs import Array
 from sigmahat.identification.coherence import spectra
 from sigmahat.identification.identify import _apart
 from sigmahat.identification.noise import low_pass
-from sigmahat.identification.regression import Form, Signals, equations, fit, left_out, rows, units
+from sigmahat.identification.regression import (
+    MOTOR,
+    Form,
+    Signals,
+    equations,
+    fit,
+    left_out,
+    rows,
+    units,
+)
 
 
 @pytest.mark.parametrize(("frequency", "h"), [(5.0, 1e-3), (100.0, 1e-3), (1.2, 1e-2)])
@@ -132,17 +141,17 @@ def test_a_motor_that_moves_fast_or_rests_keeps_all_samples() -> None:
 
 
 def test_a_torque_that_is_held_acts_half_a_sample_later() -> None:
-    """Of the samples of the log, also where the fit takes each twentieth of them."""
-    B, D_theta, t = 2e-4, 1e-3, T * np.arange(40001)
-    theta = np.sin(5 * t) + 0.3 * np.sin(13 * t)
-    velocity = 5 * np.cos(5 * t) + 3.9 * np.cos(13 * t)
-    acceleration = -25 * np.sin(5 * t) - 50.7 * np.sin(13 * t)
-    phi = 0.02 * np.sin(7 * t + 1)
-    torque = GAMMA * (B * acceleration + D_theta * velocity) - 0.3 * phi
+    """The fit is that of the torque at the samples, also if it takes each twentieth of them."""
+    t = T * np.arange(40001)
+    theta, phi = np.sin(5 * t) + 0.3 * np.sin(13 * t), 0.02 * np.sin(7 * t + 1)
+    torque = np.cos(5 * t) - 2 * np.sin(13 * t) - 0.3 * phi
     held = (torque[:-1] + torque[1:]) / 2  # mean from each sample to the next one
-    log = Signals(theta[:-1], phi[:-1], np.ones(40000), held, None, held=True)
+    at_samples = Signals(theta[:-1], phi[:-1], np.ones(40000), torque[:-1], None)
+    recorded = replace(at_samples, tau=held, held=True)
     for apart in (1, 20):
-        log_of_fit = log.with_acting_torque()[::apart]
-        found = fit(equations([log_of_fit], apart * T, GAMMA, Form(2.0, 5.0))).value
-        assert found["B"] == pytest.approx(B, rel=1e-3 * apart)
-        assert found["D_theta"] == pytest.approx(D_theta, rel=1e-3 * apart)
+        fits = [
+            fit(equations([each.with_acting_torque()[::apart]], apart * T, GAMMA, Form(2.0, 5.0)))
+            for each in (at_samples, recorded)
+        ]
+        expected, found = ([each.value[name] for name in MOTOR] for each in fits)
+        assert found == pytest.approx(expected, rel=1e-4)
