@@ -134,7 +134,7 @@ static void decide(sh_regression_state *state, const sh_parameters *p)
     }
 }
 
-/* The mean of a value >= 1 over so many blocks, in which it counts at most as so many times the mean. */
+/* The mean with one more value, at least 1: the value counts as `most` times the mean at most. */
 static sh_real usual(sh_real mean, sh_real value, sh_real most, sh_real blocks)
 {
     return sh_fmax(mean + (sh_fmin(value, most * mean) - mean) / blocks, 1);

@@ -323,7 +323,7 @@ static void add_signals(sh_mean *mean, const sh_filters *filters, const sh_filte
 static int take_sample(sh_regression_state *state, const sh_parameters *p, const sh_filtered *now)
 {
     sh_signals *signals = &state->signals;
-    const sh_real share = 1 / (sh_real)signals->decimation, rough = sh_noise_of_theta(state, p);
+    const sh_real share = 1 / (sh_real)signals->decimation, rough = sh_noise_watch_theta(state, p);
     sh_mean *mean = &state->mean;
     sh_row *row = &state->row;
 

@@ -1,5 +1,5 @@
-/* Method FilteredRegression: which states can be its own. Each condition is an `if` about one member, so that
- * an analyser knows the member behind it.
+/* Method FilteredRegression: which states can be its own. A condition about one member is an `if`, so that an
+ * analyser knows the member behind it; of numbers that only have a range, there is a table.
  */
 #include <string.h>
 

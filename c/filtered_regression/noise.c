@@ -33,7 +33,7 @@ static sh_real friction_variance(const sh_regression_state *state, const sh_para
 }
 
 /* The fourth difference of white noise of variance 1 has the variance 70; detail 4 */
-sh_real sh_noise_of_theta(sh_regression_state *state, const sh_parameters *p)
+sh_real sh_noise_watch_theta(sh_regression_state *state, const sh_parameters *p)
 {
     const sh_real *theta = state->signals.theta_before;
     const sh_real rough =

@@ -169,7 +169,7 @@ void sh_signals_take(sh_regression_state *state, const sh_parameters *p, const s
 /* ---- noise.c ----------------------------------------------------------------------------- */
 
 /* Variance of the noise of theta in the last sample by its fourth difference [rad2], of which it keeps the mean. */
-sh_real sh_noise_of_theta(sh_regression_state *state, const sh_parameters *p);
+sh_real sh_noise_watch_theta(sh_regression_state *state, const sh_parameters *p);
 
 /* Detail 4: variance of a row, with the noise of theta as the last samples show it. */
 sh_row_noise sh_noise_of_row(const sh_regression_state *state, const sh_parameters *p);

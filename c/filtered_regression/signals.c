@@ -7,7 +7,7 @@
 #include "state_variable_filter.h"
 
 /* W_c = sqrt(s_tau / (B |gamma| s_n)), s_n = count / sqrt(12), is where the noise of the torque and the
- * rounding of theta contribute equally to y; point 1. The filter is designed for w T >= 1e-4 alone.
+ * rounding of theta contribute equally to y; point 1. The filter is designed only for w T >= 1e-4.
  */
 static sh_real bandwidth_of(const sh_parameters *p)
 {

@@ -18,7 +18,9 @@ sh_filter_design sh_state_variable_filter_design(sh_real w, sh_real T);
 /* Starts filter i for a signal that has always been `before` and jumps to x now. */
 void sh_filters_start(sh_filters *filters, int i, sh_real x, sh_real before);
 
-/* Gives the next sample of filter i, of a signal that has this mean between the samples and is not linear. */
+/* Gives the next sample of filter i, of a signal that has this mean between the samples and is not linear. Then
+ * sh_filters_step follows, with this mean as x.
+ */
 void sh_filters_hold(sh_filters *filters, int i, sh_real mean);
 
 /* Advances filters from the first one on by T, in which their signals go linearly to x [size: count]. */

@@ -169,7 +169,8 @@ typedef struct {
                               at different times [s] */
     sh_real load_friction; /* of the friction per flexibility torque, and, where tau_coulomb is not
                               0, per motor torque [1] */
-    sh_real eccentric;     /* of the once-per-turn error of the link encoder [rad] */
+    sh_real eccentric;     /* of the once-per-turn error of the link encoder [rad]; 3.5 % of it
+                              stand for harmonics of the encoders and of the gear */
     sh_real delay;         /* of the delay of the torque against the positions [s] */
     sh_real reversal;      /* of a delay of the reversals of friction [s] */
     /* Columns that are used if the data ask for them: */

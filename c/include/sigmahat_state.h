@@ -156,10 +156,9 @@ enum {
  */
 typedef struct {
     sh_real input[SH_MAX_FILTERS]; /* last sample */
-    sh_real behind
-        [3]
-        [SH_MAX_FILTERS]; /* input less output of each stage: small numbers, so that derivatives lose
-                                          no digits however far the signal is from zero */
+    /* Input less output of each stage: small numbers, so that derivatives lose no digits however far
+     * the signal is from zero. */
+    sh_real behind[3][SH_MAX_FILTERS];
 } sh_filters;
 
 /* Signals behind their filters, and their derivatives by the time. */

@@ -9,7 +9,9 @@
 /* Calls SysTick_Handler `rate` times per second from now on. */
 void hardware_start_ticks(uint32_t rate);
 
-/* Reads the encoders of motor and link, and the torque of the motor from its current. */
+/* Reads the encoders of motor and link, both behind the gear [rad], and the torque of the motor before its gear, from
+ * its current [N.m].
+ */
 sh_measurement hardware_read(void);
 
 /* Counts of the clock since this interrupt was due, and counts in one period. */

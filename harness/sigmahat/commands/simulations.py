@@ -158,7 +158,7 @@ def _listed(_: click.Context, __: click.Parameter, text: str | None) -> tuple[st
 
 
 @common.command(
-    "sweep --seeds 100 --modality RESIDUAL "
+    "sweep --seeds 100 --modality RESIDUAL \\\n    "
     "--set estimator.motor.D_theta=0.9e-3:1.1e-3:5 --out friction"
 )
 @click.argument("plan", required=False, type=common.FILE)

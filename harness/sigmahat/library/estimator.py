@@ -115,7 +115,7 @@ class Estimator:
         outputs = {name: self._joints.empty(name, joints, samples) for name in self._record}
         rows = [arrays[n].reshape(joints, samples) if n in arrays else None for n in INPUTS]
         self._joints.run(rows, outputs)
-        self._compare_with_range((arrays["q"] - arrays["theta"]).reshape(joints, samples))
+        self._compare_with_range(*(arrays[n].reshape(joints, samples) for n in ("theta", "q")))
         named = {name: self._joints.named(name, v).reshape(shape) for name, v in outputs.items()}
         t = float(self.parameters[0]["samplePeriod"]) * np.arange(samples, dtype=np.float64)
         return Series.of(self._joints.fmu, named, self.parameters[0], t)
@@ -218,13 +218,14 @@ class Estimator:
     def __reduce__(self) -> str:
         raise TypeError("an Estimator cannot be pickled; make one where it is needed")
 
-    def _compare_with_range(self, every_phi: Array) -> None:
+    def _compare_with_range(self, thetas: Array, qs: Array) -> None:
         """Logs a warning, once, if the motion is far from range.phi, by which priors are scaled."""
-        for phi, every in zip(every_phi, self.parameters, strict=True):
-            is_long = len(phi) * float(every["samplePeriod"]) > _LONG
+        for theta, q, every in zip(thetas, qs, self.parameters, strict=True):
+            is_long = len(theta) * float(every["samplePeriod"]) > _LONG
             if every["method"] != "FilteredRegression" or not is_long or self._is_warned:
                 continue
-            most = float(np.max(np.abs(phi), initial=0.0, where=np.isfinite(phi)))
+            phi = np.abs(q - theta)
+            most = float(np.max(phi, initial=0.0, where=np.isfinite(phi)))
             given = float(every["range.phi"])
             if most > _FAR * given or 0 < _WIDE * most < given:
                 self._is_warned = True

@@ -99,8 +99,13 @@ class Jobs:
         """Identifies and estimates with the configuration as it is now."""
         setup = self._setup
         setup.busy = "Identifying ..."
-        job = partial(self._identify_and_estimate, self._version, setup.text)
-        self._waiting.put((self._version, job))
+        text = setup.text
+
+        def job() -> None:  # its messages are for the version at the time at which it begins
+            version = self._version
+            self._try(version, partial(self._identify_and_estimate, version, text))
+
+        self._waiting.put((None, job))
         setup.show()
 
     def _run(self) -> None:
