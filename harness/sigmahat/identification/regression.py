@@ -64,7 +64,7 @@ class Signals:
         """Some of the samples."""
         signals = {each.name: getattr(self, each.name) for each in fields(self)}
         arrays = {name: x[kept] for name, x in signals.items() if isinstance(x, np.ndarray)}
-        return replace(self, **arrays)
+        return replace(self, **arrays, held=self.held)
 
     def with_acting_torque(self) -> Signals:
         """With the mean of the torque before and behind each sample, if it is held."""
