@@ -14,9 +14,6 @@ _INNER = slice(_SMOOTH // 2, -(_SMOOTH // 2))  # samples that have a polynomial 
 _DERIVATIVE = 0.97  # from this correlation on, a column is the derivative of another column
 _COPY = 1e-4  # up to this relative residual of a fit, a column is a copy in another unit
 _BLOCKS = 8
-_BY_HAND = 0.8
-"""Correlation of deformation and velocity: 0.96 and more if a hand moves the link, below 0.5 if the
-motor moves the link."""
 
 
 @dataclass(frozen=True)
@@ -95,7 +92,7 @@ def drive(x: Array, y: Array, tau: Array, T: float) -> Drive:
     is not proportional to x counts. The equation has the acceleration of the motor, not of the
     link. So the equation explains the torque better if x is the motor. The sign of the torque
     follows from friction, which takes power from the motor on average. But a hand that moves the
-    link gives power to the motor. The deformation then follows the velocity, and `sign` is 0.
+    link gives power to the motor, by a deformation that follows the velocity: then `sign` is 0.
     """
     if len(x) < 8 * _SMOOTH or not np.ptp(x) or not np.ptp(tau):
         return Drive(0.0, 0)
@@ -110,14 +107,13 @@ def drive(x: Array, y: Array, tau: Array, T: float) -> Drive:
     factors = np.linalg.lstsq(parts, torque, rcond=1e-10)[0]
     spread = float(np.var(torque))
     explained = 1 - float(np.var(torque - parts @ factors)) / spread if spread else 0.0
-    if line(velocity, -behind).correlation > _BY_HAND:
+    if _sign(-behind * velocity) > 0:
         return Drive(explained, 0)
-    sign = _sign(np.array_split((torque - torque.mean()) * velocity, _BLOCKS))
-    return Drive(explained, sign)
+    return Drive(explained, _sign((torque - torque.mean()) * velocity))
 
 
-def _sign(blocks: list[Array]) -> int:
-    """Sign of the mean; 0 if the mean is not significant over the blocks."""
-    means = np.array([block.mean() for block in blocks])
+def _sign(power: Array) -> int:
+    """Sign of the mean; 0 if the mean is not significant over blocks of time."""
+    means = np.array([block.mean() for block in np.array_split(power, _BLOCKS)])
     error = float(means.std(ddof=1)) / np.sqrt(len(means))
     return int(np.sign(means.mean())) if abs(means.mean()) > 3 * error else 0
