@@ -46,8 +46,8 @@ def test_scenarios_are_listed_one_a_line(shell: Shell) -> None:
 def test_help_has_an_example_that_parses(name: str, shell: Shell) -> None:
     printed = shell.run(f"{name} --help")
     assert shell.err == ""
-    (example,) = re.findall(r"Example: sigmahat (.*)\n$", printed)
-    first, *arguments = example.split()
+    (example,) = re.findall(r"Example: sigmahat ((?:.*\\\n)*.*)\n$", printed)
+    first, *arguments = example.replace("\\\n", "").split()
     assert first == name or not name
     with cli.commands[first].make_context(first, arguments):
         pass

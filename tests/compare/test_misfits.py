@@ -152,6 +152,6 @@ def test_what_confident_means() -> None:
     found = [row.score for row in compare(random, JOINTS, range(401, 441), processes=2)]
     assert found[JOINTS.index(AWAS)].figures["error"] <= 5.0
     together = sum(found, Score())
-    assert together.figures["confident"] >= 90
+    assert together.figures["confident"] >= 88
     assert together.figures["wrong"] <= 0.002 * together.figures["confident"]
     assert together.figures["coverage"] >= 90
