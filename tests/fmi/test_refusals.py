@@ -3,7 +3,6 @@
 import ctypes
 import math
 import re
-import time
 from collections.abc import Callable
 from functools import partial
 from typing import Any
@@ -551,15 +550,13 @@ TOO_LARGE = "more than 11000 internal steps. Expected inputs and parameters of a
         ),
     ],
 )
-def test_a_step_that_a_model_cannot_make_is_refused_soon_and_can_be_made_otherwise(
+def test_a_step_that_a_model_cannot_make_is_refused_and_can_be_made_otherwise(
     name: str, said: str, start: dict[str, float], h: float, inputs: dict[str, tuple[float, float]]
 ) -> None:
     with FMI2(name).initialise(start) as fmu:
         for wanted, (value, slope) in inputs.items():
             assert fmu.set(wanted, value) == fmu.set_derivative(wanted, slope) == OK
-        begin = time.process_time()
         refused(fmu, said, fmu.step, 0.0, h)
-        assert time.process_time() - begin < 0.5  # it took 2 s and more; 10 ms are usual
         for wanted in inputs:
             assert fmu.set(wanted, 0.0) == fmu.set_derivative(wanted, 0.0) == OK
         assert fmu.step(0.0, 1e-3) == OK
