@@ -68,7 +68,8 @@ static sh_real evaluate_at(const sh_regression_state *state, const sh_parameters
                            const sh_joint_point *at, const sh_variances *variances, sh_real knees,
                            sh_point *point)
 {
-    const sh_real share = state->weights * state->posterior.weight * variances->second;
+    /* v sum 1/R: times V_phi, the share by which sigma is too small */
+    const sh_real attenuation = state->weights * state->posterior.weight * variances->second;
     const sh_real gain = p->prior.torque_gain;
     const int count = state->columns.spring;
     sh_real torque, torque_per_gain, stiffness, stiffness_per_gain;
@@ -80,10 +81,10 @@ static sh_real evaluate_at(const sh_regression_state *state, const sh_parameters
     point->sigma = at->sigma_nominal + stiffness;
     point->tau_e_std =
         sh_std_deviation(variances->first + sh_square(gain * torque_per_gain) +
-                         of_errors(state, p, share * point->tau_e, variances->first));
-    point->sigma_std =
-        sh_std_deviation(variances->second + sh_square(gain * stiffness_per_gain) +
-                         of_errors(state, p, share * point->sigma, variances->second) + knees);
+                         of_errors(state, p, attenuation * point->tau_e, variances->first));
+    point->sigma_std = sh_std_deviation(
+        variances->second + sh_square(gain * stiffness_per_gain) +
+        of_errors(state, p, attenuation * point->sigma, variances->second) + knees);
     return stiffness_per_gain;
 }
 

@@ -76,7 +76,7 @@ def _jumps(name: str, port: Port, values: Array) -> Iterator[Finding]:
     yield Finding(Kind.JUMP, Severity.WRONG, key, jump, unit, None, known, about=name)
 
 
-def _spikes(name: str, port: Port, values: Array, step: float) -> Iterator[Finding]:
+def _spikes(name: str, port: Port, values: Array, of_encoder: float) -> Iterator[Finding]:
     """Single samples far from both neighbours, which agree: a bus or an encoder lost them."""
     if len(values) < _LEAST:
         return
@@ -84,7 +84,7 @@ def _spikes(name: str, port: Port, values: Array, step: float) -> Iterator[Findi
         values, _ = unwrap(values, port.wrap)
     span = float(np.diff(np.quantile(values, [0.01, 0.99]))[0])
     away = np.abs(values[1:-1] - (values[2:] + values[:-2]) / 2)
-    least = _SMOOTH * span if math.isinf(step) else _UNUSUAL * step
+    least = _SMOOTH * span if math.isinf(of_encoder) else _UNUSUAL * of_encoder
     unusual = max(least, _UNUSUAL * float(np.quantile(away, 1 - 5 * _OFTEN)))
     lost = away > min(_SPIKE * span, unusual)
     lost &= away > _ALONE * np.abs(values[2:] - values[:-2])
@@ -99,12 +99,12 @@ def encoder_step(values: Array) -> float:
     return smallest_step(values[:: max(1, len(values) // _LOOKED_AT)], _STEPS)
 
 
-def step(seen: View, name: str, port: Port, step: float) -> Iterator[Finding]:
+def step(seen: View, name: str, port: Port, of_encoder: float) -> Iterator[Finding]:
     """Compares the step of the values with the step of the configured encoder."""
     given = float(seen.every[f"encoder.{name}"])
-    if not given or math.isinf(step):
+    if not given or math.isinf(of_encoder):
         return
-    angle = abs(step * factor(name, port) / port.gear_ratio)
+    angle = abs(of_encoder * factor(name, port) / port.gear_ratio)
     expected = 2 * math.pi / given
     if 1 / _FINER < angle / expected < _FINER:
         return

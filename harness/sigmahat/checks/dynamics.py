@@ -90,7 +90,7 @@ def _gear(seen: View, found: Fitted) -> Finding | None:
         return None
     # An asymmetric spring, a wrong zero, or a spring that changes, must not explain it as well.
     others = [each.error for each in (found.fit, with_all_powers(seen, found.form))]
-    others.append(motor.in_parts(seen, found.form))
+    others.append(motor.error_of_parts(seen, found.form))
     if not all(error.fit.error < _MUCH * each for each in others if math.isfinite(each)):
         return None
     change = gear_of(seen.configuration.ports["theta"], error.value, error.half_width)

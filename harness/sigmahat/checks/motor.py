@@ -155,7 +155,7 @@ def with_all_powers(seen: View, form: Form) -> Fit:
     return fit(_chosen(seen, replace(form, n=_ORDERS).with_all_powers())[1])
 
 
-def in_parts(seen: View, form: Form) -> float:
+def error_of_parts(seen: View, form: Form) -> float:
     """Sum of the squared errors if each part of the log may have another spring and friction.
 
     Without the part with the largest errors, in which the spring may change.

@@ -156,7 +156,7 @@ class Equations:
 
     def parts(self, number: int) -> list[Equations]:
         """The same equations, divided into parts of equal duration."""
-        ends = np.linspace(0, len(self.rows), number + 1).astype(int)
+        ends = -(-np.arange(number + 1) * len(self.rows) // number)  # rounded up
         return [
             replace(self, ZX=self.ZX[i:k], Zy=self.Zy[i:k], R=self.R[i:k], rows=self.rows[i:k])
             for i, k in pairwise(ends)
@@ -164,15 +164,14 @@ class Equations:
 
     def in_parts(self, parts: int) -> Equations:
         """The same equations in fewer, longer blocks."""
-        part = np.arange(len(self.rows)) * parts // len(self.rows)
-        of_part = [part == i for i in np.unique(part)]
+        every = [each for each in self.parts(parts) if len(each.rows)]
         columns = self.R.shape[2]
         return replace(
             self,
-            ZX=np.array([self.ZX[each].sum(axis=0) for each in of_part]),
-            Zy=np.array([self.Zy[each].sum(axis=0) for each in of_part]),
-            R=np.array([factor(self.R[each].reshape(-1, columns)) for each in of_part]),
-            rows=np.array([self.rows[each].sum() for each in of_part]),
+            ZX=np.array([each.ZX.sum(axis=0) for each in every]),
+            Zy=np.array([each.Zy.sum(axis=0) for each in every]),
+            R=np.array([factor(each.R.reshape(-1, columns)) for each in every]),
+            rows=np.array([each.rows.sum() for each in every]),
         )
 
 
