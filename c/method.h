@@ -1,8 +1,8 @@
 /* The shape of a method of estimation, and what all methods share.
  *
- * A method has a folder of its own and defines one constant of type sh_method. To add one, write
- * its folder and add its line to SH_METHODS in sigmahat.h: nothing else in c/ and in fmu_src/ asks
- * which methods there are. If it has a state of its own, add a struct to sigmahat_state.h.
+ * A method has a folder of its own and defines one constant of type sh_method. To add a method,
+ * write its folder and add its line to SH_METHODS in sigmahat.h. Nothing else in c/ and fmu_src/ asks
+ * which methods there are. If the method has its own state, add a struct to sigmahat_state.h.
  *
  * All of c/ can be compiled as one file (the amalgamation). So all its files share one namespace
  * for the names that are `static`: two files must not use the same one.
@@ -47,8 +47,8 @@ typedef struct {
 } sh_method;
 
 /* Besides the constant each method has a function that checks a state that comes from elsewhere, as
- * sh_estimator_check. It is not a member of the constant, and stands in a file of its own, so that a
- * program that calls no check does not contain it.
+ * sh_estimator_check. The function is not a member of the constant, and stands in a file of its own.
+ * So a program that calls no check does not contain the function.
  *
  * Returns 0, or 1 if sizes, places and choices in it are not those of a state of the method.
  */

@@ -3,8 +3,7 @@
  * Compilers use vector instructions for loops over long arrays. For the short loops of the
  * recursion they often do not, or spend more on moving numbers within registers than they gain. So
  * the pairs are written down. Where the processor has registers for two doubles, gcc and clang
- * compute a pair in one instruction; the results are the same to the last digit as those of the
- * plain C below.
+ * compute a pair in one instruction. The plain C below has the same results to the last digit.
  */
 #ifndef SH_PAIR_H
 #define SH_PAIR_H

@@ -16,10 +16,10 @@
  *
  *     memory   1000 a100 bc10 def1 ghij klmn  1000 o100
  *
- * What it gains: the four entries of a column are two pairs (pair.h), and every inner loop computes
- * four neighbours in the same way, without a test for the diagonal. What it costs: the zeros and
- * ones need memory (200 entries in place of 153 for 18 parameters) and are computed with, which is
- * much for 3 parameters; and below there are loops over panels. Figures are in docs/performance.md.
+ * Advantage: the four entries of a column are two pairs (pair.h). So every inner loop computes four neighbours in the
+ * same way, without a test for the diagonal. Cost: the zeros and ones need memory (200 entries in place of 153 for 18
+ * parameters). They are also computed with, which is much for 3 parameters, and the loops below run over panels.
+ * Figures are in docs/performance.md.
  */
 #include "ud_factor.h"
 
@@ -132,8 +132,8 @@ static void multiply_two(const sh_ud_factor *P, const sh_real *F, int j, const s
     sh_pair_store(f + j, sh_pair_sums(sum_0, sum_1));
 }
 
-/* f = U' F. The last columns may be one less than are computed at once: what is computed for
- * the other one is not used, as the next panel is in memory there.
+/* f = U' F. At the end there may be one column less than is computed at once. In its place the next panel is in memory,
+ * and this result is not used.
  */
 static void multiply(const sh_ud_factor *P, const sh_real *F, sh_real *f)
 {
@@ -258,9 +258,9 @@ const sh_real *sh_ud_factor_update(sh_ud_factor *P, sh_real w)
     if (!(P->least > FAR_ABOVE_UNDERFLOW)) {
         clear_underflowed(P);
     }
-    /* Panel after panel, as an entry of p depends on its own row of U alone; two at a time, as they
-     * share the factors of the columns. In the first column of a panel only the one on the diagonal
-     * is not zero: there p becomes g_i, and u does not change.
+    /* Panel after panel, as an entry of p depends on its own row of U alone. Two panels at a time, as
+     * they share the factors of the columns. In the first column of a panel only the entry on the
+     * diagonal is not zero: there p becomes g_i, and u does not change.
      */
     for (i = 0; i + SH_PANEL < size; i += 2 * SH_PANEL) {
         sh_real *next = u + stride;

@@ -1,6 +1,6 @@
-/* A covariance P = U D U', U unit upper triangular and D diagonal. P itself is never
- * formed. An entry of D that is positive stays positive, so P stays positive definite whatever the
- * data (Bierman 1977, Factorization Methods for Discrete Sequential Estimation, chapter V).
+/* A covariance P = U D U', U unit upper triangular and D diagonal. P itself is never formed. A positive entry of D
+ * stays positive, so P stays positive definite whatever the data. Source: Bierman 1977, Factorization Methods for
+ * Discrete Sequential Estimation, chapter V.
  *
  * Vectors F are [size: P->size]. Nothing behind their last entry is read.
  */

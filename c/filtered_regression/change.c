@@ -5,8 +5,8 @@
  *        prior is known. What the data say about motor and friction is in the rows behind.
  *     2  friction has changed: all blocks, but friction has changed by about the deviations of its priors
  *
- * Hypothesis 2 begins when there is evidence against hypothesis 0, in the blocks in which friction drifts, which are
- * those of hypothesis 0 again if nothing has changed.
+ * Hypothesis 2 begins when there is evidence against hypothesis 0. It uses the blocks in which friction drifts. If
+ * nothing has changed, these blocks become the blocks of hypothesis 0 again.
  */
 #include "constants.h"
 #include "regression.h"
@@ -21,8 +21,8 @@ void sh_change_start(sh_regression_state *state)
     state->history.change_age = -1;
 }
 
-/* Hypothesis 1 begins now: t is the end of the last block without evidence. A block of before t that counted as one
- * of the changed spring would contradict those behind t.
+/* Hypothesis 1 begins now: t is the end of the last block without evidence. A block from before t must not count for
+ * the changed spring: it would contradict the blocks behind t.
  */
 static void begin(sh_regression_state *state)
 {
@@ -34,8 +34,8 @@ static void begin(sh_regression_state *state)
     change->evidence = change->blocks = 0;
 }
 
-/* Hypothesis 2 begins now, if there is friction that does not drift anyway. A sample of this drift that waits is of the
- * blocks as they were.
+/* Hypothesis 2 begins now, if there is friction that does not drift anyway. A sample of this drift that waits is
+ * dropped: it belongs to the blocks as they were.
  */
 static void begin_friction(sh_regression_state *state, const sh_parameters *p)
 {
@@ -81,9 +81,9 @@ static void end_friction(sh_regression_state *state)
     change->friction_blocks = 0;
 }
 
-/* A block that contradicts hypothesis 1 while one block alone may be all the evidence: the spring has changed behind t.
- * Then t becomes the begin of this block, which hypothesis 0 has not taken yet, and hypothesis 1 leaves out: in it, the
- * spring changes.
+/* If a block contradicts hypothesis 1 while one block alone may be all the evidence, the spring has changed behind t.
+ * Then t becomes the begin of this block, which hypothesis 0 has not taken yet. Hypothesis 1 leaves this block out: the
+ * spring changes in it.
  */
 int sh_change_begins_anew(sh_regression_state *state, sh_real error)
 {
@@ -95,9 +95,9 @@ int sh_change_begins_anew(sh_regression_state *state, sh_real error)
     return 1;
 }
 
-/* The blocks are those of the hypothesis that is in blocks.drifting, and so are the data: those of all samples contain
- * some of behind t, which contradict what they say about the motor. The next posterior follows. It has the prior twice,
- * as these data contain it; what the blocks say soon outweighs it.
+/* Blocks and data become the blocks of the hypothesis that is in blocks.drifting. The data of all samples contain
+ * samples from behind t, which contradict what these data say about the motor. The next posterior follows. It has the
+ * prior twice, as the blocks contain the prior; what the blocks say soon outweighs the prior.
  */
 static void adopt(sh_regression_state *state, const sh_parameters *p)
 {

@@ -1,6 +1,6 @@
 /* The columns of the regression, and the row of a sample.
  *
- * The equation of motion is that of the motor (3) with Coulomb friction, where the motor data B and D_theta
+ * The equation of motion is the equation (3) of the motor with Coulomb friction. The motor data B and D_theta
  * have the relative errors b and d, and tau_e > 0 for phi > 0:
  *
  *     gamma^2 B (1 + b) theta'' + gamma^2 D_theta (1 + d) theta' + |gamma| sign(theta') tau_C
@@ -59,7 +59,7 @@ enum { ONE, TAU_E, K_0, TAU_C, IF_DRY, IF_CURVE };
 #define PRIOR(member) (int)offsetof(sh_parameters, prior.member)
 #define POWER (SH_IS_CURVE | SH_IS_POWER)
 
-/* Those before DAMPING have a filter of their own, whose signal is in signal_of. The entry of the others is in
+/* The columns before DAMPING have their own filters, whose signals are in signal_of. The entries of the others are in
  * entry_of.
  */
 const sh_column_kind sh_column_kinds[SH_COLUMN_KINDS] = {
@@ -189,8 +189,8 @@ static void add(column_list *list, const sh_parameters *p, int kind, int i, int 
     list->size += 1;
 }
 
-/* Those of the spring are the first ones; behind them are the others that have a filter of their own. Those of friction
- * are the last ones before the inertia. See change.c.
+/* The columns of the spring are the first ones; behind them are the others with their own filters. The columns of
+ * friction are the last ones before the inertia. See change.c.
  */
 static void list_columns(const sh_parameters *p, column_list *list)
 {
@@ -399,8 +399,8 @@ void sh_joint_point_at(sh_joint_point *point, const sh_columns *columns, const s
     }
 }
 
-/* 1 if x may be on the other side of the place where the slope of a knee changes, or of a dead zone that may be
- * one: that place is known to 2 % of the range, or to a factor of 2.
+/* 1 if x may be on the other side of the place where the slope changes. The place of a knee is known to 2 % of the
+ * range. The place of a dead zone that may be a knee is known to a factor of 2.
  */
 static int is_beside(const sh_column *column, const sh_parameters *p, sh_real x)
 {
@@ -476,8 +476,8 @@ sh_real sh_columns_y(const sh_parameters *p, const sh_filtered *f)
     return torque_in_y(p, f) + (sh_is_measured(p) ? 0 : motor_torque(p, f, SH_FILTER_THETA));
 }
 
-/* sigma S + gamma^2 (D_theta S' + B S''): the error of y by the error S of theta, which is signal i; 0 while sigma is
- * not known, detail 13.
+/* sigma S + gamma^2 (D_theta S' + B S''): the error of y by the error S of theta, which is signal i. Returns 0 while
+ * sigma is not known (detail 13).
  */
 static sh_real encoder_error(const sh_regression_state *state, const sh_parameters *p, int i)
 {
@@ -540,8 +540,8 @@ void sh_columns_row(const sh_regression_state *state, const sh_parameters *p, sh
     x[size + SH_RIGHT_Y] = sh_columns_y(p, f) - f->output[SH_FILTER_NOMINAL];
 }
 
-/* nu = lambda epsilon / (1 - lambda c s'), s' = slope: noise of the torque. It is taken out of the column, and
- * so out of the prediction. What is left has the variance (1 - lambda) N_tau, and so much in common with the
+/* nu = lambda epsilon / (1 - lambda c s'), s' = slope: noise of the torque. This noise is taken out of the column, and
+ * so out of the prediction. What is left has the variance (1 - lambda) N_tau, which is also its covariance with the
  * torque in y.
  */
 sh_real sh_columns_remove_noise(const sh_regression_state *state, const sh_row_noise *noise,

@@ -12,8 +12,8 @@
 #define SH_FORGOTTEN ((sh_real)12)
 /* Change of phi in a sample, over the finer resolution, below which phi rests [1]: less than a count. */
 #define SH_RESTS ((sh_real)0.25)
-/* Spacing of the rows over 1/w, and largest number of samples of a row [1]: with 1.8, the same results, with 4.5, 2 %
- * larger errors. With 16 samples, a log of 10 s at 250 Hz has too few blocks.
+/* Spacing of the rows over 1/w, and largest number of samples of a row [1]. A spacing of 1.8 has the same results, and
+ * 4.5 has 2 % larger errors. With 16 samples, a log of 10 s at 250 Hz has too few blocks.
  */
 #define SH_ROW_SPACING ((sh_real)2.5)
 #define SH_LONGEST_ROW 8
@@ -27,8 +27,8 @@
 #define SH_HYSTERESES {(sh_real)0.005, (sh_real)0.02, (sh_real)0.08}
 /* Share of the covered range from which such a width looks like the spring [1]: with half, twice the error. */
 #define SH_LOOKS_LIKE_SPRING ((sh_real)0.25)
-/* Stiffness within the widest dead zone over the one outside, below which it is a gap, and no part of sigma [1]:
- * else it is a knee. A gap leaves 0, a knee of harmonic drives half.
+/* Stiffness within the widest dead zone over the stiffness outside [1]. Below this ratio the zone is a gap and no part
+ * of sigma, else it is a knee. A gap leaves 0, a knee of harmonic drives half.
  */
 #define SH_GAP ((sh_real)0.3)
 /* Place of a possible knee over range.phi [1]: harmonic drives have theirs at a third of the largest torque. */
@@ -84,13 +84,13 @@
 #define SH_FEW_BLOCKS ((sh_real)4)
 /* Number of blocks below which nothing is forgotten [1]. */
 #define SH_FIRST_BLOCKS ((sh_real)20)
-/* Misfit, squared, that is a doubt with fewer than so many blocks [1]: with more, all columns that may explain it have
- * been tried, and the variance factor covers the rest.
+/* Misfit, squared, that is a doubt with fewer than so many blocks [1]. With more blocks, all columns that may explain
+ * the misfit have been tried, and the variance factor covers the rest.
  */
 #define SH_UNEXPLAINED ((sh_real)2.25)
 #define SH_UNTRIED_BLOCKS ((sh_real)35)
-/* Number of blocks that show as much of the misfit as nothing did before them [1]: without it, of the first half second
- * in which joints with several misfits are confident, 4.6 % are wrong, and 1.4 % with it.
+/* With N blocks, the variance counts 1 + this number / N times [1]. In the first half second, joints with several
+ * misfits are then wrong for 1.4 % of the confident time. With the number 0, this was 4.6 %.
  */
 #define SH_UNJUDGED_BLOCKS ((sh_real)10)
 /* Number of blocks that count [1]: 100 s, so that a misfit that begins after hours is noticed soon. */
@@ -103,8 +103,8 @@
 #define SH_CONTRADICTION ((sh_real)1.5)
 /* regression.memory over the time constant of the recent blocks [1]. */
 #define SH_RECENT ((sh_real)10)
-/* Misfit over its usual value above which data are forgotten faster [1]: with 1, a second run of an industrial robot
- * with other friction makes it forget the first one.
+/* Misfit over its usual value above which data are forgotten faster [1]. With 1, an industrial robot's second run with
+ * other friction makes the estimator forget the first run.
  */
 #define SH_FAR_FROM_USUAL ((sh_real)3)
 /* How much faster data are forgotten if the recent ones agree [1]: the joint has changed. */
@@ -123,26 +123,27 @@
 #define SH_MAY_HAVE_CHANGED ((sh_real)20)
 #define SH_HAS_CHANGED ((sh_real)75)
 /* Largest evidence of one block, over the usual misfit, and with any misfit [1]: one block alone, which may be a blow,
- * is no change. With 25 throughout, a sixth fewer changes are found; with 50 throughout, 300 simulated runs had 17
- * changes that were none, and not 10.
+ * is no change. With 25 throughout, a sixth fewer changes are found. With 50 throughout, 300 simulated runs had 17
+ * false changes, and not 10.
  */
 #define SH_LARGEST_EVIDENCE ((sh_real)50)
 #define SH_LEAST_LIMIT_OF_EVIDENCE ((sh_real)25)
-/* Difference of the squared errors, in usual errors, from which another spring is clearly better than other friction,
- * and number of blocks after which any difference decides [1]. With 10, of 160 simulated changes of friction twice as
- * many are taken for one of the spring; with 8 blocks, too. With 25, the estimate follows the spring 0.1 s later.
+/* Difference of the squared errors, in usual errors, from which another spring is clearly better than other friction
+ * [1]. After so many blocks any difference decides. With 10, or with 8 blocks, twice as many of 160 simulated changes
+ * of friction are taken for a change of the spring. With 25, the estimate follows the spring 0.1 s later.
  */
 #define SH_CLEARLY_BETTER ((sh_real)25)
 #define SH_BLOCKS_TO_DECIDE ((sh_real)20)
 /* Squared error of a block, in usual errors, that contradicts the changed spring [1]: 3.5 std deviations. */
 #define SH_CONTRADICTS ((sh_real)12.5)
-/* Number of blocks of the usual error, and most that one counts, in usual errors [1]: a change is found before.
+/* Number of blocks in the mean that is the usual error, and largest count of one block, in usual errors [1]. A change
+ * is found before it becomes usual.
  */
 #define SH_LEVEL_BLOCKS ((sh_real)400)
 #define SH_LARGEST_LEVEL ((sh_real)9)
-/* Misfit over its usual value above which the estimate is in doubt, and number of blocks after which the usual
- * value is known [1]: 15 s. With 1.5, logs without a change are in doubt for 4 % of the time, with 2 twice as
- * many changes are not noticed for over 1 s.
+/* Misfit over its usual value above which the estimate is in doubt [1]. The usual value is known after so many blocks:
+ * 15 s. With 1.5, logs without a change are in doubt for 4 % of the time. With 2, twice as many changes are not noticed
+ * for over 1 s.
  */
 #define SH_SUDDEN_MISFIT ((sh_real)1.7)
 #define SH_USUAL_BLOCKS ((sh_real)300)
@@ -157,14 +158,14 @@
  * hardly change. No simple ratio of blocks and rows, so that no rounding error decides.
  */
 #define SH_REFIT_PAUSE ((sh_real)0.0101)
-/* Duration of a row for each step that a refit makes in a step of the row [s], and most of these steps [1]: one in rows
- * below 13 ms, four from 26 ms on. With one there, too, a wrong choice of columns would last for 0.8 s at 250 Hz. There
- * are fewer than samples in a row.
+/* Duration of a row for each step that a refit makes in a step of the row [s], and most of these steps [1]. There is
+ * one in rows below 13 ms, and four from 26 ms on. With one there, too, a wrong choice of columns would last for 0.8 s
+ * at 250 Hz. There are fewer steps than samples in a row.
  */
 #define SH_TIME_OF_STEP ((sh_real)0.0065)
 #define SH_MOST_STEPS 4
-/* Number of blocks from which groups of columns are tried [1]. 360 random joints were confident and over 20 % wrong for
- * 0.42 % of the time, with 10 for 0.54 and with 20 for 0.47 %.
+/* Number of blocks from which groups of columns are tried [1]. With 15, 360 random joints were confident and over 20 %
+ * wrong for 0.42 % of the time. With 10, this was 0.54 %, and with 20 it was 0.47 %.
  */
 #define SH_FIRST_TRIAL ((sh_real)15)
 /* Pause before [s]: a refit then removes noise (detail 14), and judges the misfit. */
@@ -183,7 +184,8 @@
 
 /* ---- what is reported, filtered_regression.c --------------------------------------------- */
 
-/* Not confident where (|phi| / range.phi)^e is larger, e the highest power, but at least beyond the second [1].
+/* Not confident where x = |phi| / range.phi is above the second number and x^e above the first [1]. The highest power
+ * is e.
  */
 #define SH_LARGEST_POWER ((sh_real)32)
 #define SH_LEAST_LIMIT ((sh_real)2)

@@ -28,7 +28,7 @@ static int check_filtered_regression(const sh_parameters *p, sh_violation *viola
     return 0;
 }
 
-/* Largest |phi|: there the highest power e is 32 times as large as at range.phi; at least twice it. */
+/* Largest |phi|: there the highest power e is 32 times as large as at range.phi. At least twice range.phi. */
 static sh_real largest_deformation_filtered_regression(const sh_parameters *p)
 {
     const int e = sh_power_of_phi(p->rls.symmetric, p->rls.n - 1);
@@ -45,8 +45,8 @@ static sh_variances variances_at(const sh_regression_state *state, const sh_para
                                   state->columns.spring);
 }
 
-/* By the share v sum V_phi/R, errors of phi make a value too small (point 5). Those that repeat with the position change
- * it by at most two std deviations: by more, they would also change columns of the motor beyond their priors.
+/* Errors of phi make a value too small by the share v sum V_phi/R (point 5). Errors that repeat with the position
+ * change it by at most two std deviations. By more, they would also move columns of the motor out of their priors.
  *
  * value     times v sum 1/R
  * variance  of the value
@@ -60,9 +60,9 @@ static sh_real of_errors(const sh_regression_state *state, const sh_parameters *
            sh_fmin(sh_square(harmonics * value), sh_square(SH_LARGEST_PULL) * variance);
 }
 
-/* tau_e = F' beta, (21), and sigma = dF' beta, (23), with the curve rls.eta_0. To the variances c' P c of both are
- * added (s_g d(c' beta)/dg)^2 with the gain g of the torque (point 8), what errors of phi may change (point 5), and what
- * is not known beside a knee [(N.m/rad)2] (point 6). Returns d sigma / dg.
+/* tau_e = F' beta, (21), and sigma = dF' beta, (23), with the curve rls.eta_0. Both variances are c' P c plus
+ * (s_g d(c' beta)/dg)^2 with the gain g of the torque (point 8), plus what errors of phi may change (point 5). The
+ * variance of sigma also has what is not known beside a knee [(N.m/rad)2] (point 6). Returns d sigma / dg.
  */
 static sh_real evaluate_at(const sh_regression_state *state, const sh_parameters *p,
                            const sh_joint_point *at, const sh_variances *variances, sh_real knees,
@@ -157,8 +157,8 @@ static void read_coefficients(const sh_regression_state *state, const sh_paramet
     }
 }
 
-/* Why the estimate is not confident. The misfit widens sigma_std, so it has a limit of its own for few blocks only:
- * then the columns that may explain it have not all been tried. And c' P c counts 1 + 10/N times, because N blocks
+/* Why the estimate is not confident. The misfit widens sigma_std, and has its own limit for few blocks only: then the
+ * columns that may explain it have not all been tried. With N blocks, c' P c counts 1 + 10/N times, because few blocks
  * hardly show whether the model holds.
  */
 static int doubt_of(const sh_regression_state *state, const sh_parameters *p,
@@ -219,7 +219,7 @@ static void report_coefficients(sh_regression_state *state, const sh_parameters 
 }
 
 /* Sets all outputs, and what the next row depends on. Returns 0, and sets none, if a number overflows. The variances
- * at a point are as much work as a row, so they are computed as often (detail 16).
+ * at a point are as much work as a row, so they are computed once for a row (detail 16).
  *
  * settled  whether the filters have settled
  * news     SH_NEW_*
@@ -351,8 +351,8 @@ static sh_real weight_of(const sh_row_noise *noise, const sh_real *x, int count)
     return w > 0 && w * sh_sum_of_products(x, x, count) <= SH_LARGE ? w : 0;
 }
 
-/* epsilon = y - x' beta, without the share of it that is noise of the torque: the column of the motor's torque contains
- * this noise, too, and loses it (detail 14).
+/* epsilon = y - x' beta, without its share that is noise of the torque. This noise is also removed from the column of
+ * the motor's torque (detail 14).
  */
 static sh_real predict(const sh_regression_state *state, const sh_row_noise *noise, sh_real *x,
                        sh_column_noise *left)
@@ -421,8 +421,8 @@ static int steps_of_refit(const sh_signals *signals)
     return steps;
 }
 
-/* Step 0 to 2 behind the row: a block that it fills is taken in all of them, and in the first one behind the next row.
- * Else a refit goes on, by more steps if rows are long, so that it takes as much time. Returns SH_NEW_*.
+/* Step 0 to 2 behind the row. A block that the row fills is taken in these steps, and in step 0 behind the next row.
+ * Else a refit goes on, by more steps if rows are long, so that a refit takes as much time. Returns SH_NEW_*.
  */
 static int advance_block(sh_regression_state *state, const sh_parameters *p, int step)
 {
@@ -443,8 +443,8 @@ static int advance_block(sh_regression_state *state, const sh_parameters *p, int
     return news;
 }
 
-/* What else a row changes: step 0 to 6, at most one triangular matrix each, but up to four where a refit goes on in
- * long rows, and copies where a change is adopted. Returns SH_NEW_*.
+/* What else a row changes: step 0 to 6. A step changes at most one triangular matrix, but up to four where a refit goes
+ * on in long rows. Where a change is adopted, a step also copies matrices. Returns SH_NEW_*.
  */
 static int take_step(sh_regression_state *state, const sh_parameters *p, int step)
 {
@@ -465,7 +465,7 @@ static int take_step(sh_regression_state *state, const sh_parameters *p, int ste
     return 0;
 }
 
-/* First of the steps in a tick since the row, of as many ticks as there are. */
+/* The first step that belongs to this tick since the row, if all steps are spread over so many ticks. */
 static int first_step(int tick, int ticks)
 {
     return (SH_ROW_STEPS * tick + ticks - 1) / ticks;
@@ -499,7 +499,7 @@ static void wait_until_settled(sh_regression_state *state)
     }
 }
 
-/* Forgets what the last row depended on: the next one must not be as large because of it. Returns 0. */
+/* Forgets what the last row depended on, so that the next row is not too large for the same reason. Returns 0. */
 static int refuse(sh_regression_state *state, const sh_history *before)
 {
     state->signals.begun = 0; /* the filters start again, so their old state does not matter */

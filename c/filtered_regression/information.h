@@ -1,11 +1,10 @@
-/* Least squares in the information form, without square roots (detail 5): sum of w x x' = U' D U over samples
- * y = x' beta of weight w, U unit upper triangular, and the right-hand sides as U z. A sample is taken in
- * O(size^2), and no parameter needs a prior (Gentleman 1974, Algorithm AS 75, Applied Statistics 23:448-454;
- * Miller 1992, AS 274).
+/* Least squares in the information form, without square roots (detail 5). Over samples y = x' beta of weight w, the sum
+ * of w x x' is U' D U, with U unit upper triangular. The right-hand sides are U z. A sample is taken in O(size^2), and
+ * no parameter needs a prior (Gentleman 1974, Algorithm AS 75, Applied Statistics 23:448-454; Miller 1992, AS 274).
  *
- * D[i] is the information about parameter i if those before it are estimated too and those after it are exact.
- * Every entry of D must start above 0: if other columns make up a column exactly, it would else consist of
- * rounding errors, and the division by it would destroy U.
+ * D[i] is the information about parameter i if the parameters before are estimated too, and the ones after are exact.
+ * Every entry of D must start above 0. Else the entry of a column that other columns make up exactly would be a
+ * rounding error. The division by this error would destroy U.
  */
 #ifndef SH_INFORMATION_H
 #define SH_INFORMATION_H
@@ -19,7 +18,7 @@
  */
 void sh_information_start(sh_information *a, int size, sh_real precision);
 
-/* Copies the rows that are used, which may be few of those that there is room for. */
+/* Copies only the rows that are used. */
 void sh_information_copy(sh_information *to, const sh_information *from);
 
 /* Starts again with the first parameters: they get the estimate 0 and the precision. What the samples say about
@@ -36,15 +35,15 @@ void sh_information_restart(sh_information *a, int count, sh_real precision);
  * w  weight. If it is negative, a sample of this weight is removed; U' D U must stay positive
  *    definite
  *
- * A row whose entry of D would fall below 1e-300, or 1e-37 in single precision, is left as it is, and
- * `squares` grows by at most SH_LARGE.
+ * A row stays as it is if its entry of D would fall below 1e-300, or 1e-37 in single precision. The member `squares`
+ * grows by at most SH_LARGE.
  *
  * Returns w / (1 + w rho), where rho = x' (U' D U)^-1 x is from before the sample.
  */
 sh_real sh_information_take(sh_information *a, sh_real *x, sh_real w);
 
-/* The rows first..end - 1 take what those before them left of a sample. With all rows, one part after the other, this
- * is sh_information_take. Numbers behind the last row count as the number of rows.
+/* The rows first..end - 1 take what the rows before left of a sample. With all rows, one part after the other, this is
+ * sh_information_take. Numbers behind the last row count as the number of rows.
  *
  * Returns the weight of what is left in x[end..] for the other rows.
  */
@@ -75,8 +74,8 @@ void sh_information_set_last(sh_information *a, const sh_last_row *last);
 void sh_information_solve(const sh_information *a, const sh_last_row *last, sh_real *beta,
                           sh_real *per_gain);
 
-/* Variances c' (U' D U)^-1 c of two combinations c' beta [size: size], which are overwritten. last_D is the entry of D
- * of another last row.
+/* Variances c' (U' D U)^-1 c of two combinations c' beta [size: size], which are overwritten. For the last row, D is
+ * last_D.
  */
 sh_variances sh_information_variances(const sh_information *a, sh_real last_D, sh_real *first,
                                       sh_real *second);

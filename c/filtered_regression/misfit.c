@@ -44,8 +44,8 @@ static void forget_blocks(sh_blocks *blocks, sh_real factor)
     blocks->count *= factor;
 }
 
-/* sum h^2 w / (sum h w)^2 times the share of white noise that H leaves, plus the variance of
- * (gamma^2 B theta'')_f by the rounding of theta.
+/* White noise has the variance sum h^2 w / (sum h w)^2 times the share that H leaves. The rounding of theta adds the
+ * variance of (gamma^2 B theta'')_f.
  */
 static sh_real variance_of(const sh_regression_state *state, const sh_parameters *p)
 {
@@ -84,9 +84,9 @@ static sh_real take_block(sh_information *a, const sh_real *mean, sh_real w, int
     return sh_limited(error * sh_square(x[a->size + SH_RIGHT_Y]), SH_LARGE);
 }
 
-/* Mean row sum h w x / sum h w. The hypothesis of a change takes it first, as it may begin anew before this block. It
- * does not take its first block: if this is evidence, the spring changes in it, and if not, the hypothesis begins anew
- * behind it.
+/* Mean row sum h w x / sum h w. The hypothesis of a change takes this row first, as it may begin anew before this
+ * block. The hypothesis does not take its first block: if this block is evidence, the spring changes in it. If not, the
+ * hypothesis begins anew behind the block.
  */
 void sh_blocks_end(sh_regression_state *state, const sh_parameters *p, int step)
 {
@@ -161,7 +161,7 @@ static sh_real squares_of(const sh_information *blocks, const sh_real *beta, sh_
            prior * sh_sum_of_products(beta, beta, blocks->size);
 }
 
-/* 0 also while friction or the curve drifts, which these blocks do not contain. */
+/* Sets 0 also while friction or the curve drifts: the recent blocks do not contain this drift. */
 void sh_misfit_judge_recent(sh_regression_state *state, const sh_parameters *p)
 {
     sh_blocks *blocks = &state->blocks;
@@ -175,7 +175,7 @@ void sh_misfit_judge_recent(sh_regression_state *state, const sh_parameters *p)
     }
 }
 
-/* Whether there are so many blocks that the parameters explain a part of their squares, and that data are forgotten. */
+/* Whether there are enough blocks to forget data, and to allow for the squares that the parameters explain. */
 static int has_many_blocks(const sh_regression_state *state)
 {
     const sh_real N = state->blocks.count;
@@ -187,7 +187,7 @@ static int has_many_blocks(const sh_regression_state *state)
  *
  *     kappa^2 = max(q, q_recent, 1 + (q - t) max(1, N / 5))  if q > t, else max(1, q, q_recent) .
  *
- * A misfit is a function of the state and repeats with the motion, so its part q - t does not average
+ * A misfit is a function of the state and repeats with the motion. So its part q - t does not average
  * out over N blocks. With few blocks, q is their sum over N; with too few, the last judgement stays.
  */
 void sh_misfit_judge(sh_regression_state *state, const sh_parameters *p)
@@ -217,7 +217,7 @@ void sh_misfit_judge(sh_regression_state *state, const sh_parameters *p)
 
 /* ---- drift of friction, detail 10 -------------------------------------------------------- */
 
-/* Whether friction drifts, by the residuals of both regressions. Not while the second one tests other friction. */
+/* Judges by the residuals of both regressions whether friction drifts; not while the second tests other friction. */
 static void judge_drift(sh_regression_state *state)
 {
     const sh_blocks *blocks = &state->blocks;
@@ -264,9 +264,9 @@ void sh_friction_drift(sh_regression_state *state, sh_real time, int step)
 
 /* ---- forgetting, details 9 and 11 -------------------------------------------------------- */
 
-/* Forgets data of so much time of motion [s]: faster while the misfit is over three times its usual value, but not
- * faster than the recent blocks; at least five times as fast if these agree by themselves, because then the joint has
- * changed.
+/* Forgets data of so much time of motion [s]. Data fade faster while the misfit is over three times its usual value,
+ * but not faster than the recent blocks. If these blocks agree by themselves, the joint has changed: then data fade at
+ * least five times as fast.
  */
 static void forget_data(sh_regression_state *state, const sh_parameters *p, sh_real moving)
 {
@@ -287,8 +287,8 @@ static void forget_data(sh_regression_state *state, const sh_parameters *p, sh_r
     state->noise.gain *= factor;
 }
 
-/* P += drift time / (v'v + R) v v', where v are the columns of the curve in the last row and R is its
- * variance. The errors of phi are a part of the information along v, and are lost as the rest of it.
+/* P += drift time / (v'v + R) v v'. Here v are the columns of the curve in the last row, and R is the variance of this
+ * row. The errors of phi are a part of the information along v, and are lost with this information.
  */
 static void let_curve_drift(sh_regression_state *state, const sh_parameters *p, sh_real time)
 {
@@ -308,8 +308,8 @@ static void let_curve_drift(sh_regression_state *state, const sh_parameters *p, 
     }
 }
 
-/* Time counts as far as blocks do: nothing is forgotten at rest. With a short memory, blocks must become
- * more first.
+/* Time counts as far as blocks do: nothing is forgotten at rest. With a short memory, the number of blocks
+ * must grow first.
  */
 void sh_forget(sh_regression_state *state, const sh_parameters *p, sh_real time)
 {

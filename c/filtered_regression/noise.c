@@ -49,12 +49,12 @@ sh_real sh_noise_watch_theta(sh_regression_state *state, const sh_parameters *p)
 /* K R = (sigma^2 (count^2 + count_q^2)/12 + (gamma s_tau)^2) (1 + 0.3 (X - 1))
  *       + 16/(3 w T) gamma^2 (tau_C^2 + P_CC) u_f^2
  *
- * White noise enters as it is before the filter (point 1), as the mean of K samples. A wrong sign of friction
- * in one sample leaves the filter as its impulse response h, in many samples, so its variance is divided by
- * T integral of h^2 = 3/16 w T.
+ * White noise enters as it is before the filter (point 1), as the mean of K samples. A wrong sign of friction in one
+ * sample leaves the filter as its impulse response h, in many samples. So the variance of friction is divided by T
+ * integral of h^2 = 3/16 w T.
  *
- * Errors that do not average out (point 5): with the variance R of what is independent and c of what
- * stays, n samples have the information 1 / (R / n + c), so the n-th one has the variance
+ * Errors that do not average out (point 5): R is the variance of the independent part, and c of the part that stays.
+ * Then n samples have the information 1 / (R / n + c), so the n-th one has the variance
  *
  *     R (1 + c n / R)^2 .
  *
@@ -97,8 +97,8 @@ sh_real sh_noise_of_deformation(const sh_signals *signals)
     return signals->gain * counts_squared(signals) / 12;
 }
 
-/* N R = (gamma^2 B prior.B)^2 G V. V is a mean over samples: of the squared fourth difference / 70, but of
- * 0.056 (count^2 / 12) in a sample in which the position changes.
+/* N R = (gamma^2 B prior.B)^2 G V. V is the mean over samples of the squared fourth difference / 70. A sample in which
+ * the position changes adds 0.056 (count^2 / 12) to this mean.
  */
 sh_real sh_noise_of_inertia(const sh_regression_state *state, const sh_parameters *p)
 {
@@ -109,8 +109,8 @@ sh_real sh_noise_of_inertia(const sh_regression_state *state, const sh_parameter
     return sh_is_measured(p) ? 0 : sh_square(p->prior.B) * inertial_noise(signals, p) * V;
 }
 
-/* epsilon^2 > 25 (x' P x + N_tau + (gamma^2 B)^2 G count^2/12 + gamma^2 (tau_C^2 + P_CC) u_f^2), where x contains
- * only the columns of the equation: a bias, or another thing that a joint may have, would hide a slow motion.
+/* epsilon^2 > 25 (x' P x + N_tau + (gamma^2 B)^2 G count^2/12 + gamma^2 (tau_C^2 + P_CC) u_f^2). Here x
+ * contains only the columns of the equation: a bias, or another effect of real joints, would hide a slow motion.
  */
 int sh_noise_contradicts_rest(sh_regression_state *state, const sh_parameters *p,
                               const sh_row_noise *noise)

@@ -1,7 +1,7 @@
 /* Refits: how the misfit, and the choice of columns, act on past samples in bounded time (detail 6). A row of
  * the data with its weight is a sample for another triangle: so a new posterior is computed beside the present
- * one. A step takes a row of the data, beginning with the last; these are short, so that it takes two of them. A new
- * row passes the rows of the data from the first to the last: what those that have not been read leave of it is for the
+ * one. A step takes a row of the data, beginning with the last, or two while the rows are short. A new row passes the
+ * rows of the data from the first to the last. What the rows that have not been read leave of the new row is for the
  * new posterior, too. Every second refit is a trial of a group of columns, and its estimate is not used.
  */
 #include <string.h>
@@ -10,8 +10,8 @@
 #include "regression.h"
 
 /* Where column i stands; -1 if it is not used. Columns of the spring stand behind others: their variances then
- * need few rows of U. Behind them stand those of the motor, whose information is changed or whose variance is
- * used, and at the end the group that is tried.
+ * need few rows of U. Behind them stand columns of the motor, whose information is changed or whose variance is
+ * used. At the end stands the group that is tried.
  */
 static int place_of(const sh_regression_state *state, const sh_parameters *p, int i)
 {

@@ -7,11 +7,11 @@
 #include "information.h"
 
 enum {
-    SH_ROW_STEPS = 7,   /* in which a row changes the estimate, and what is behind it */
+    SH_ROW_STEPS = 7,   /* in which a row changes the estimate, and all that depends on it */
     SH_REFIT_STEPS = 16 /* of a refit behind its rows, before it pauses */
 };
 
-/* What a step changes, which may be added up. */
+/* What a step changes. The values may be added up. */
 enum {
     SH_NEW_COEFFICIENTS = 1,
     SH_NEW_VARIANCES = 2 /* to be computed at the point of this tick */
@@ -118,8 +118,8 @@ void sh_joint_point_at(sh_joint_point *point, const sh_columns *columns, const s
                        sh_real theta, sh_real q, sh_real phi, sh_real set_point,
                        const sh_real *stop);
 
-/* Point 6: leaves the slope of a dead zone out that is a gap. Returns the variance of the slope where it changes
- * at once, because this place is not known exactly [(N.m/rad)2].
+/* Point 6: leaves out the slope of a dead zone that is a gap. Returns the variance of the slope beside a knee, because
+ * the place of the knee is not known exactly [(N.m/rad)2].
  */
 sh_real sh_columns_judge_knees(const sh_columns *columns, const sh_parameters *p,
                                const sh_real *beta, sh_joint_point *at);
@@ -135,9 +135,8 @@ sh_real sh_columns_y(const sh_parameters *p, const sh_filtered *f);
  */
 void sh_columns_row(const sh_regression_state *state, const sh_parameters *p, sh_real *x);
 
-/* Detail 14: removes from the column of the motor's torque in x the noise that y contains too, if the
- * prediction error of y is epsilon [N.m]. Sets the noise that is left, times R. Returns by how much the
- * prediction of y grows [N.m].
+/* Detail 14: removes the noise that y contains, too, from the column of the motor's torque in x. The prediction error
+ * of y is epsilon [N.m]. Sets the noise that is left, times R. Returns by how much the prediction of y grows [N.m].
  */
 sh_real sh_columns_remove_noise(const sh_regression_state *state, const sh_row_noise *noise,
                                 sh_real epsilon, sh_real *x, sh_column_noise *left);
@@ -188,13 +187,13 @@ int sh_noise_contradicts_rest(sh_regression_state *state, const sh_parameters *p
 
 void sh_posterior_copy(sh_posterior *to, const sh_posterior *from);
 
-/* Takes a row x of all columns [size: size], then the right-hand sides, of the weight w times the weight of the
- * posterior. Returns 1 / (1 + rho), where rho is the variance of the prediction over the one of the row.
+/* Takes a row x: all columns [size: size], then the right-hand sides. Its weight is w times the weight of the
+ * posterior. Returns 1 / (1 + rho), where rho is the variance of the prediction over the variance of the row.
  */
 sh_real sh_posterior_take(sh_posterior *posterior, const sh_real *x, int size, sh_real w);
 
-/* Detail 7: adds information [1] about b that is only rounding, and removes as much as possible. b is the last
- * column, and does not become less certain than its prior, prior_B > 0.
+/* Detail 7: adds information [1] about b that is only rounding, and removes as much as possible. The last column,
+ * b, does not become less certain than its prior, prior_B > 0.
  */
 void sh_posterior_remove(sh_posterior *posterior, sh_real information, sh_real prior_B);
 
@@ -221,21 +220,21 @@ static inline int sh_block_is_full(const sh_blocks *blocks)
     return blocks->rows >= blocks->length;
 }
 
-/* Step 0..3 of what a full block does, nothing else: one regression a step takes its mean row. */
+/* Step 0..3 behind a row. Only if a block is full, one regression in each step takes the mean row of the block. */
 void sh_blocks_end(sh_regression_state *state, const sh_parameters *p, int step);
 
-/* Leaves out the samples of the present block: they are not in sequence with the next one. */
+/* Leaves out the samples of the present block: they are not in sequence with the next samples. */
 void sh_blocks_interrupt(sh_blocks *blocks);
 
 /* Detail 8: judges the recent blocks by the estimate beta; then sets misfit and variance_factor by all blocks. */
 void sh_misfit_judge_recent(sh_regression_state *state, const sh_parameters *p);
 void sh_misfit_judge(sh_regression_state *state, const sh_parameters *p);
 
-/* Process noise of a column: an even step sets its sample, and an odd one takes it, if there is one. */
+/* Process noise of a column: an even step sets its sample, and an odd step takes this sample, if there is one. */
 void sh_drift_step(sh_refit *refit, sh_information *a, int column, sh_real variance, int step);
 
-/* Step 0..7 of detail 10, of which every second one takes the sample of the one before: lets friction drift for
- * `time` [s], in the data if the blocks contradict each other less with it.
+/* Step 0..7 of detail 10: lets friction drift for `time` [s]. Every second step takes the sample of the step before.
+ * Friction drifts in the data, too, if the blocks contradict each other less with the drift.
  */
 void sh_friction_drift(sh_regression_state *state, sh_real time, int step);
 
@@ -248,8 +247,8 @@ void sh_forget(sh_regression_state *state, const sh_parameters *p, sh_real time)
 
 void sh_change_start(sh_regression_state *state);
 
-/* Whether the hypothesis of a change begins anew before the block that it has just taken, with a squared error over its
- * variance [1], and without this block.
+/* Whether the hypothesis of a change begins anew before the block that it has just taken, and without this block. The
+ * squared error of the block, over its variance, is `error` [1].
  */
 int sh_change_begins_anew(sh_regression_state *state, sh_real error);
 
@@ -259,8 +258,8 @@ int sh_change_begins_anew(sh_regression_state *state, sh_real error);
 void sh_change_judge(sh_regression_state *state, const sh_parameters *p, sh_real before,
                      sh_real spring, sh_real friction);
 
-/* Step 0..2 behind a row in which no block is taken: lets friction be another one, if this is a hypothesis that has
- * just begun. Returns 0 if there is nothing to do.
+/* Step 0..2 behind a row in which no block is taken. Lets friction be another one, if this hypothesis has just begun.
+ * Returns 0 if there is nothing to do.
  */
 int sh_change_widens_friction(sh_regression_state *state, int step);
 
@@ -281,7 +280,7 @@ void sh_refit_begin(sh_regression_state *state, const sh_parameters *p);
 /* Takes the newest row into the data of all samples. */
 void sh_data_take(sh_regression_state *state);
 
-/* Takes what the newest row left for the refit, if one is running. Nothing may be read in between. */
+/* Takes what sh_data_take left of the newest row, if a refit is running. No row may be read in between. */
 void sh_refit_take(sh_regression_state *state);
 
 /* Takes a row of the data of all samples, two where they are short, or does the next step at the end of a refit.

@@ -2,8 +2,8 @@
 
 #include "constants.h"
 
-/* Far below the resolution of any signal, and far above the numbers that processors compute slowly
- * with, to which a filter at rest would decay.
+/* Far below the resolution of any signal. A filter at rest would decay to far smaller numbers, with which processors
+ * compute slowly.
  */
 static const sh_real SMALL = (sh_real)1e-30;
 

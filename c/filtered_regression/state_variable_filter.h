@@ -18,7 +18,7 @@ sh_filter_design sh_state_variable_filter_design(sh_real w, sh_real T);
 /* Starts filter i for a signal that has always been `before` and jumps to x now. */
 void sh_filters_start(sh_filters *filters, int i, sh_real x, sh_real before);
 
-/* Gives the next sample of filter i, of a signal that has this mean between the samples and is not linear. Then
+/* Gives filter i the mean of its signal until the next sample, if the signal is not linear between samples. Then
  * sh_filters_step follows, with this mean as x.
  */
 void sh_filters_hold(sh_filters *filters, int i, sh_real mean);
@@ -27,8 +27,8 @@ void sh_filters_hold(sh_filters *filters, int i, sh_real mean);
 void sh_filters_step(sh_filters *restrict filters, const sh_filter_design *design, int first,
                      const sh_real *restrict x, int count);
 
-/* Lets those of the first filters rest that are as good as at rest: processors compute slowly with the numbers to
- * which they would decay.
+/* Lets the first filters rest if they are nearly at rest: processors compute slowly with the numbers to which they
+ * would decay.
  */
 void sh_filters_rest(sh_filters *filters, int count);
 
@@ -44,8 +44,8 @@ static inline sh_real sh_window(sh_real k, sh_real rows)
     return 16 * (x * (1 - x)) * (x * (1 - x));
 }
 
-/* Shares of white noise that H [1] and s^2 H [1/s4] leave in the mean over rows of K samples under this window:
- * the energy of the filtered window over that of the window.
+/* Shares of white noise that H [1] and s^2 H [1/s4] leave in the mean over rows of K samples under this window. A share
+ * is the energy of the filtered window over the energy of the window.
  */
 void sh_state_variable_filter_noise(const sh_filter_design *design, sh_real rows, int K,
                                     sh_real *gain, sh_real *gain_second);

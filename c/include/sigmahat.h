@@ -1,8 +1,8 @@
 /* sigmahat: the stiffness of a flexible robot joint, estimated on line from positions and torque.
  *
- * Equation numbers, here and in all of c/, are those of Flacco, De Luca, Sardellitti and
- * Tsagarakis, "Robust Estimation of Variable Stiffness in Flexible Joints", IROS 2011. One tick of
- * the estimator is its Fig. 1.
+ * Equation numbers in c/ are from the paper "Robust Estimation of Variable Stiffness in Flexible
+ * Joints" by Flacco, De Luca, Sardellitti and Tsagarakis, IROS 2011. One tick of the estimator is
+ * Fig. 1 of the paper.
  *
  *     sh_parameters p;
  *     sh_violation violation;
@@ -27,8 +27,8 @@
 extern "C" {
 #endif
 
-/* The floating-point type of the whole library: double, or float if every file that includes this
- * header, and every file of the library, is compiled with -DSH_REAL=float.
+/* The floating-point type of the whole library is double. For float, compile every file of the
+ * library, and every file that includes this header, with -DSH_REAL=float.
  */
 #ifndef SH_REAL
 #define SH_REAL double
@@ -96,8 +96,8 @@ enum {
 };
 
 /* Largest orders of the polynomials (18) and (19), in the deformation and in the set-point. They
- * determine the size of sh_estimator. Smaller ones can be given to the compiler, as plain numbers and
- * with the same values for every file that includes this header, and every file of the library.
+ * determine the size of sh_estimator. The compiler can be given smaller ones, as plain numbers. They
+ * must be the same for every file of the library, and every file that includes this header.
  */
 #ifndef SH_MAX_N
 #define SH_MAX_N 8
@@ -347,14 +347,14 @@ void sh_estimator_start(sh_estimator *estimator, const sh_parameters *p, sh_esti
  * estimate  in: as the last tick, or sh_estimator_start, left it; out: the new estimate
  *
  * Returns 0, or 1 if the tick is skipped: a measurement is not finite or beyond
- * SH_LARGEST_MEASUREMENT, or the numbers overflow. A skipped tick sets estimate->valid to 0, is
- * counted, and changes nothing else of the estimate; nor of the state, unless the numbers overflow.
+ * SH_LARGEST_MEASUREMENT, or the numbers overflow. A skipped tick is counted and sets estimate->valid
+ * to 0. Nothing else of the estimate changes; nor of the state, unless the numbers overflow.
  * What happens at the first good sample after such a gap depends on the method:
  *
  * SH_METHOD_PAPER2011 filters over the time that has passed. If the gap is shorter than 2 / K_I,
- * the residual integrates over it as over one long sample. After a longer gap it starts from its
- * last value, and with SH_MODALITY_RESIDUAL the regression learns nothing, a = 0, until that value
- * is forgotten, ten time constants 1 / K_I later.
+ * the residual integrates over it as over one long sample. After a longer gap the residual starts
+ * from its last value. With SH_MODALITY_RESIDUAL the regression then learns nothing, a = 0, until
+ * this value is forgotten, ten time constants 1 / K_I later.
  *
  * SH_METHOD_FILTERED_REGRESSION starts its filters again and learns nothing for
  * 12 / w, where w is the corner frequency of its filters, at most regression.bandwidth.
@@ -364,9 +364,9 @@ int sh_estimator_tick(sh_estimator *estimator, const sh_parameters *p, const sh_
                       sh_estimate *estimate);
 
 /* Evaluates the present estimate at any deformation, (21) and (23). Nothing is learned, and the
- * estimator does not change. A tick gives the same numbers for its own phi and setPoint; with
- * SH_METHOD_FILTERED_REGRESSION its standard deviations may be those of a deformation up to 2.5 / w
- * before, where w is the corner frequency of its filters.
+ * estimator does not change. A tick gives the same numbers for its own phi and setPoint. But with
+ * SH_METHOD_FILTERED_REGRESSION the standard deviations of a tick may belong to a deformation up to
+ * 2.5 / w before. Here w is the corner frequency of the filters.
  *
  * p         parameters that pass sh_parameters_check; the fixed ones as they were at the start
  * phi       deformation [rad]
@@ -378,8 +378,8 @@ int sh_estimator_tick(sh_estimator *estimator, const sh_parameters *p, const sh_
 int sh_estimator_evaluate(const sh_estimator *estimator, const sh_parameters *p, sh_real phi,
                           sh_real setPoint, sh_point *point);
 
-/* Checks a state that comes from elsewhere, as from a file: its sizes, places and choices must be
- * those of a state that sh_estimator_start and sh_estimator_tick make with these parameters. Then a
+/* Checks a state that comes from elsewhere, as from a file. Its sizes, places and choices must be
+ * such as sh_estimator_start and sh_estimator_tick make with these parameters. Then a
  * tick reads and writes nothing beyond the state, and ends. The check does not show whether the
  * other numbers are the ones that were saved. For that, save a checksum.
  *

@@ -135,7 +135,7 @@ typedef struct {
     sh_column column[SH_MAX_COLUMNS];
 } sh_columns;
 
-/* What the filters are of. Those before the nominal torque start as if their signal had always been the same, others at 0. */
+/* Signals of the filters. Those before the nominal torque start as if they had always been the same, others at 0. */
 enum {
     SH_FILTER_THETA,
     SH_FILTER_PHI,     /* deformation */

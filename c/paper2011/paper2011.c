@@ -17,8 +17,8 @@ static int check_paper2011(const sh_parameters *p, sh_violation *violation)
     return 0;
 }
 
-/* P of the recursion times this is a covariance [(N.m)2]: the variance of the torque's noise, as if
- * it were white, times the weight that (27) gives to every sample.
+/* P of the recursion times this unit is a covariance [(N.m)2]. The unit is the variance of the torque's noise, as if
+ * the noise were white, times the weight that (27) gives to every sample.
  */
 static sh_real unit_of_covariance(const sh_parameters *p)
 {
@@ -115,9 +115,9 @@ static sh_real track(sh_paper2011_filters *state, const sh_parameters *p, const 
     if (p->deformation == SH_DEFORMATION_FILTERED) {
         sh_kinematic_kalman_step(q, &p->filter, z->q, dt, state->q_w_s);
     }
-    /* (8) integrates over a gap as over one long sample while that is short compared with 1 / K_I.
-     * After a longer gap the torque in between is unknown: r_e starts from its last value, which is
-     * wrong, and the regression waits until it is forgotten.
+    /* (8) integrates over a gap as over one long sample if the gap is short compared with 1 / K_I.
+     * After a longer gap the torque in between is unknown. Then r_e starts from its last value, which
+     * is wrong, and the regression waits until this value is forgotten.
      */
     state->settling -= dt;
     if (dt * p->residual.K_I < 2) {
