@@ -20,17 +20,6 @@ from controllers import run
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
-def test_fmpy_ten_lines(tmp_path: Path) -> None:
-    program = EXAMPLES / "fmpy_ten_lines.py"
-    value, unit = run(sys.executable, program, cwd=tmp_path).split()
-    assert unit == "N.m/rad"
-    # The stiffness of the joint from which its log was computed.
-    assert float(value) == pytest.approx(1000.0, abs=1.0)
-    page = (EXAMPLES.parent / "docs" / "fmu.md").read_text(encoding="utf-8")
-    assert f"It prints {float(value):.1f}:" in page
-    assert f"```python\n{program.read_text(encoding='utf-8')}```\n" in page
-
-
 def test_own_log(tmp_path: Path) -> None:
     printed = run(sys.executable, EXAMPLES / "own_log.py", cwd=tmp_path)
     tutorial = runpy.run_path(str(EXAMPLES / "tutorial" / "record.py"))
