@@ -8,13 +8,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from subjects import SIZES
-
 Times = Mapping[str, NDArray[np.float64]]
 """By name of the subject: time for one piece of work in each round [ns]. NaN in a round in which
 the subject did not run."""
 
-LABELS = {"sigmahat": "sigmahat", "eigen": "Eigen", "covariance": "covariance alone, plain loops"}
 FMPY = "simulate_fmu of FMPy"
 
 
@@ -66,35 +63,19 @@ def _duration(ns: float) -> str:
 
 
 def table(times: Times) -> str:
-    """All tables as Markdown."""
+    """Both tables as Markdown."""
     lines = [f"Measured on {_processor()}.", "", "| quantity | required | measured | met |"]
     lines += ["|---|---|---|---|", *_requirements(times)]
 
-    lines += ["", "Least squares, one sample, median (min) [ns]:", ""]
-    lines += ["| | " + " | ".join(f"{n} parameters" for n in SIZES) + " |", "|---" * 5 + "|"]
-    for make, label in LABELS.items():
-        cells = (f"{_short(times, f'{make} {n}')}" for n in SIZES)
-        lines.append(f"| {label} | " + " | ".join(cells) + " |")
-    lines += [
-        "",
-        "| one tick, step or run | median | min | relative to the bare tick |",
-        "|---" * 4 + "|",
-    ]
+    header = "| one sample, tick, step or run | median | min | relative to the bare tick |"
+    lines += ["", header, "|---" * 4 + "|"]
     for name, of_name in times.items():
-        if not re.match(r"tick|.*FMU|plant|Estimator|simulate|table1", name):
-            continue
         low, middle = float(np.nanmin(of_name)), float(np.nanmedian(of_name))
         relative = ratio(times, name, "tick Paper2011") if re.match("tick|.*FMU", name) else None
         against = "" if relative is None else f"{relative:.2f} x"
         lines.append(f"| {name} | {_duration(middle)} | {_duration(low)} | {against} |")
 
     return "\n".join([*lines, ""])
-
-
-def _short(times: Times, name: str) -> str:
-    values = times[name]
-    digits = 1 if np.nanmedian(values) < 1000 else 0
-    return f"{np.nanmedian(values):.{digits}f} ({np.nanmin(values):.{digits}f})"
 
 
 def _processor() -> str:
