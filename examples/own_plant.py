@@ -3,13 +3,11 @@
 A pendulum on a spring that hardens, driven by a motor; with it, the estimator. Needs a C compiler
 and CasADi, which `pip install '.[plants]'` adds.
 
-Usage: python own_plant.py [FOLDER]     writes PendulumPlant.fmu and own_plant.png there
+Usage: python own_plant.py [FOLDER]     writes PendulumPlant.fmu there
 """
 
 import sys
 from pathlib import Path
-
-from matplotlib.figure import Figure
 
 try:
     import casadi as ca
@@ -83,7 +81,7 @@ def main(folder: Path) -> None:
             fmu=str(fmu),
             start={},
             inputs={"tau": sigmahat.Sines(0.0, [sigmahat.Sine(0.2, 0.5), sigmahat.Sine(0.1, 1.3)])},
-            record=["sigma", "phi"],
+            record=["sigma"],
         ),
         {
             "RESIDUAL": sigmahat.EstimatorFmu(
@@ -101,20 +99,6 @@ def main(folder: Path) -> None:
     true, estimate = recording.plant["sigma"], recording.estimators["RESIDUAL"]["sigma"]
     found = sigmahat.indices(recording.t, true, estimate)
     print(f"{fmu}: after 1 s, MSREP {found.msrep_settled:.2g} %")
-
-    figure = Figure(figsize=(8, 5), layout="constrained")
-    above, below = figure.subplots(2, 1, sharex=True)
-    above.plot(recording.t, true, color="#aaaaaa", linewidth=3, label="true")
-    above.plot(recording.t, estimate, color="#0072B2", linewidth=1, label="estimated")
-    above.set_ylim(0, 1.3 * true.max())
-    above.set_ylabel("stiffness [N·m/rad]")
-    above.legend(ncols=2)
-    below.plot(recording.t, recording.plant["phi"], color="#0072B2", linewidth=1)
-    below.set_ylabel("deformation [rad]")
-    below.set_xlabel("time [s]")
-    for axes in (above, below):
-        axes.grid(color="#dddddd")
-    figure.savefig(folder / "own_plant.png", dpi=150)
 
 
 if __name__ == "__main__":
