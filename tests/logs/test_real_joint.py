@@ -3,18 +3,13 @@
 The requirements were chosen after a first look at the data: see docs/real-joint.md.
 """
 
-import re
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import real_joint
-from command_line import Shell
-from controllers import run
 from real_joint import SETTINGS, Log, M, N
-from recorded_logs import read_estimate
 from shared_data import data_folder
 from sigmahat import Estimator
 from sigmahat.checks.check import check
@@ -108,23 +103,10 @@ def test_filtered_regression_claims_what_it_knows(measured: Logs, general: Estim
     assert real_joint.coverage(measured, fit) >= 90.0
 
 
-def test_the_page_gives_the_same(data: Path, general: Estimator, shell: Shell) -> None:
-    page = (Path(__file__).parents[2] / "docs" / "real-joint.md").read_text()
-    (program,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
-    (configuration,) = re.findall(r"```toml\n(.*?)```", page, re.DOTALL)
-    run(sys.executable, "-c", program, data)
-    Path("desr.toml").write_text(configuration)
-    shell.run("estimate desr.csv --out out")
-    table = read_estimate(Path("out"))
-    for name, unit in (("sigma", "N.m/rad"), ("tau_e", "N.m")):
-        last = table[f"estimate.{name} [{unit}]"].to_numpy()[-1]
-        assert last == pytest.approx(general.output(name), rel=1e-12)
-
-
 def test_check_finds_nothing_wrong_in_a_right_setup(data: Path) -> None:
     """On this bench theta is the compliance of the bench, computed from the torque."""
     ports = {
-        "theta": Port("torque_Nm", scale=8.00609748621252e-05),  # as in docs/real-joint.md
+        "theta": Port("torque_Nm", scale=1 / real_joint.DYNAMOMETER),
         "q": Port("angle_rad"),
         "tau_e_sensor": Port("torque_Nm", zero=-1.2),
     }
