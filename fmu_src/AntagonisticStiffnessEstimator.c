@@ -31,13 +31,9 @@ static sh_parameters parameters_of(const AntagonisticStiffnessEstimator *fmu, in
 /* Why the sum is not confident. One side alone may move too little, if the sum is certain enough. */
 static int doubt_of_sum(const AntagonisticStiffnessEstimator *fmu)
 {
-    int worst = SH_DOUBT_NONE, i;
+    const int one = fmu->side[0].output.doubt, other = fmu->side[1].output.doubt;
+    const int worst = one > other ? one : other;
 
-    for (i = 0; i < 2; ++i) {
-        if (fmu->side[i].output.doubt > worst) {
-            worst = fmu->side[i].output.doubt;
-        }
-    }
     if (worst != SH_DOUBT_NOT_EXCITED && worst != SH_DOUBT_NONE) {
         return worst;
     }

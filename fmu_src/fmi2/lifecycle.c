@@ -1,4 +1,6 @@
 /* FMI 2.0: inquiry, logging, creation, the course of a simulation, and the state of the FMU. */
+#include <math.h>
+
 #include "fmi2Functions.h"
 #include "log.h"
 #include "simulation.h"
@@ -27,15 +29,14 @@ void sh_deliver(const sh_instance *instance, sh_status status, const char *categ
 fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean loggingOn, size_t nCategories,
                                const fmi2String categories[])
 {
-    sh_instance *instance = sh_enter(c, SH_ANY, "fmi2SetDebugLogging");
+    sh_instance *instance = c;
     unsigned found = 0;
-    sh_status status;
+    const sh_status status =
+        sh_find_categories(c, nCategories, categories, &found, "fmi2SetDebugLogging");
 
-    if (instance == NULL ||
-        (nCategories > 0 && !sh_has(instance, categories, "fmi2SetDebugLogging", "categories"))) {
+    if (status > SH_WARNING) {
         return fmi2Error;
     }
-    status = sh_find_categories(instance, nCategories, categories, &found, "fmi2SetDebugLogging");
     if (!loggingOn) {
         instance->categories = SH_LOG_STATUS; /* all but debug messages */
     } else if (found != 0) {
@@ -75,14 +76,10 @@ void fmi2FreeInstance(fmi2Component c)
 fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean toleranceDefined, fmi2Real tolerance,
                                fmi2Real startTime, fmi2Boolean stopTimeDefined, fmi2Real stopTime)
 {
-    const sh_experiment experiment = {toleranceDefined, tolerance, startTime, stopTimeDefined,
-                                      stopTime};
-    sh_instance *instance = sh_enter(c, SH_INSTANTIATED, "fmi2SetupExperiment");
-
-    if (instance == NULL) {
-        return fmi2Error;
-    }
-    return (fmi2Status)sh_set_up(instance, &experiment, "fmi2SetupExperiment");
+    (void)toleranceDefined; /* the tolerance has no effect */
+    (void)tolerance;
+    return (fmi2Status)sh_set_up(c, startTime, stopTimeDefined ? stopTime : INFINITY,
+                                 "fmi2SetupExperiment");
 }
 
 /* A function whose arguments the shell takes as they are. */
@@ -96,17 +93,7 @@ fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean toleranceDefined, fm
 FORWARD(EnterInitializationMode, (fmi2Component c), sh_begin_initialization(c, function))
 FORWARD(ExitInitializationMode, (fmi2Component c), sh_end_initialization(c, function))
 FORWARD(Terminate, (fmi2Component c), sh_terminate(c, function))
-
-fmi2Status fmi2Reset(fmi2Component c)
-{
-    sh_instance *instance = sh_enter(c, SH_ANY, "fmi2Reset");
-
-    if (instance == NULL) {
-        return fmi2Error;
-    }
-    sh_reset(instance);
-    return fmi2OK;
-}
+FORWARD(Reset, (fmi2Component c), sh_reset(c, function))
 
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real currentCommunicationPoint,
                       fmi2Real communicationStepSize, fmi2Boolean noSetFMUStatePriorToCurrentPoint)

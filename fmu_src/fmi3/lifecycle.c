@@ -1,4 +1,6 @@
 /* FMI 3.0: inquiry, logging, creation, the course of a simulation, and the state of the FMU. */
+#include <math.h>
+
 #include "fmi3Functions.h"
 #include "log.h"
 #include "simulation.h"
@@ -22,15 +24,14 @@ void sh_deliver(const sh_instance *instance, sh_status status, const char *categ
 fmi3Status fmi3SetDebugLogging(fmi3Instance instance, fmi3Boolean loggingOn, size_t nCategories,
                                const fmi3String categories[])
 {
-    sh_instance *entered = sh_enter(instance, SH_ANY, "fmi3SetDebugLogging");
+    sh_instance *entered = instance;
     unsigned found = 0;
-    sh_status status;
+    const sh_status status =
+        sh_find_categories(instance, nCategories, categories, &found, "fmi3SetDebugLogging");
 
-    if (entered == NULL ||
-        (nCategories > 0 && !sh_has(entered, categories, "fmi3SetDebugLogging", "categories"))) {
+    if (status > SH_WARNING) {
         return fmi3Error;
     }
-    status = sh_find_categories(entered, nCategories, categories, &found, "fmi3SetDebugLogging");
     if (loggingOn) {
         entered->categories |= found;
     } else {
@@ -76,14 +77,13 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance instance, fmi3Boolean tolera
                                        fmi3Boolean stopTimeDefined, fmi3Float64 stopTime)
 {
     static const char function[] = "fmi3EnterInitializationMode";
-    const sh_experiment experiment = {toleranceDefined, tolerance, startTime, stopTimeDefined,
-                                      stopTime};
-    sh_instance *entered = sh_enter(instance, SH_INSTANTIATED, function);
 
-    if (entered == NULL || sh_set_up(entered, &experiment, function) != SH_OK) {
+    (void)toleranceDefined; /* the tolerance has no effect */
+    (void)tolerance;
+    if (sh_set_up(instance, startTime, stopTimeDefined ? stopTime : INFINITY, function) != SH_OK) {
         return fmi3Error;
     }
-    return (fmi3Status)sh_begin_initialization(entered, function);
+    return (fmi3Status)sh_begin_initialization(instance, function);
 }
 
 /* A function whose arguments the shell takes as they are. */
@@ -123,18 +123,7 @@ fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 currentCommunicationPoi
 }
 
 FORWARD(Terminate, (fmi3Instance instance), sh_terminate(instance, function))
-
-fmi3Status fmi3Reset(fmi3Instance instance)
-{
-    sh_instance *entered = sh_enter(instance, SH_ANY, "fmi3Reset");
-
-    if (entered == NULL) {
-        return fmi3Error;
-    }
-    sh_reset(entered);
-    return fmi3OK;
-}
-
+FORWARD(Reset, (fmi3Instance instance), sh_reset(instance, function))
 FORWARD(GetFMUState, (fmi3Instance instance, fmi3FMUState *FMUState),
         sh_save_state(instance, FMUState, function))
 FORWARD(SetFMUState, (fmi3Instance instance, fmi3FMUState FMUState),

@@ -81,6 +81,24 @@ void *sh_refuse_instance(const sh_importer *importer, const char *function, cons
     return NULL;
 }
 
+static void set_start_values(sh_instance *instance)
+{
+    size_t i;
+
+    (void)memset(instance->model, 0, sh_fmu_model.size);
+    for (i = 0; i < sh_fmu_model.count; ++i) {
+        sh_write(instance, &sh_fmu_model.variables[i], sh_fmu_model.variables[i].start);
+    }
+    instance->state = SH_INSTANTIATED;
+    instance->time = 0.0;
+    instance->stop_time = INFINITY;
+    instance->steps = 0.0;
+    instance->previous_step = 0.0;
+    instance->outputs_stale = 1;
+    instance->parameters_unchecked = 1;
+    instance->slopes_end = 0;
+}
+
 sh_instance *sh_create(const sh_importer *importer, const char *name, const char *guid,
                        unsigned categories, const char *function)
 {
@@ -115,11 +133,7 @@ sh_instance *sh_create(const sh_importer *importer, const char *name, const char
     instance->model = model;
     instance->name = strcpy(own_name, name);
     instance->categories = categories;
-    sh_reset(instance);
-    if (sh_make_utf8(instance->name)) {
-        sh_report(instance, SH_WARNING, "%s: instanceName is not UTF-8; messages name %s.",
-                  function, instance->name);
-    }
+    set_start_values(instance);
     return instance;
 }
 
@@ -136,20 +150,13 @@ void sh_destroy(sh_instance *instance)
     sh_release(&importer, instance);
 }
 
-void sh_reset(sh_instance *instance)
+sh_status sh_reset(void *handle, const char *function)
 {
-    size_t i;
+    sh_instance *instance = sh_enter(handle, SH_ANY, function);
 
-    (void)memset(instance->model, 0, sh_fmu_model.size);
-    for (i = 0; i < sh_fmu_model.count; ++i) {
-        sh_write(instance, &sh_fmu_model.variables[i], sh_fmu_model.variables[i].start);
+    if (instance == NULL) {
+        return SH_ERROR;
     }
-    instance->state = SH_INSTANTIATED;
-    instance->time = 0.0;
-    instance->stop_time = INFINITY;
-    instance->steps = 0.0;
-    instance->previous_step = 0.0;
-    instance->outputs_stale = 1;
-    instance->parameters_unchecked = 1;
-    instance->slopes_end = 0;
+    set_start_values(instance);
+    return SH_OK;
 }

@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "simulation.h"
+
 /* The first ones are those of an sh_status. */
 static const struct {
     const char *name;
@@ -14,53 +16,15 @@ static const struct {
              {"logStatusError", SH_LOG_ERROR},
              {"logAll", SH_LOG_ALL}};
 
-/* Bytes of the UTF-8 character that begins here, or 0 if none does (RFC 3629). */
-static size_t utf8_length(const unsigned char *s)
+/* Texts of the importer may be no UTF-8, or be cut inside a character: only ASCII is shown. */
+static void make_ascii(char *text)
 {
-    unsigned char low = 0x80, high = 0xbf; /* of the second byte */
-    size_t length, i;
-
-    if (s[0] < 0x80) {
-        return 1;
-    }
-    if (s[0] < 0xc2 || s[0] > 0xf4) {
-        return 0;
-    }
-    length = s[0] < 0xe0 ? 2 : s[0] < 0xf0 ? 3 : 4;
-    if (s[0] == 0xe0) {
-        low = 0xa0; /* other characters have a shorter form */
-    } else if (s[0] == 0xed) {
-        high = 0x9f; /* no halves of surrogate pairs */
-    } else if (s[0] == 0xf0) {
-        low = 0x90;
-    } else if (s[0] == 0xf4) {
-        high = 0x8f; /* no characters above U+10FFFF */
-    }
-    if (s[1] < low || s[1] > high) {
-        return 0;
-    }
-    for (i = 2; i < length; ++i) {
-        if ((s[i] & 0xc0) != 0x80) {
-            return 0;
-        }
-    }
-    return length;
-}
-
-int sh_make_utf8(char *text)
-{
-    int replaced = 0;
-
     while (*text != '\0') {
-        size_t length = utf8_length((const unsigned char *)text);
-        if (length == 0) {
+        if ((unsigned char)*text >= 0x80) {
             *text = '?';
-            replaced = 1;
-            length = 1;
         }
-        text += length;
+        ++text;
     }
-    return replaced;
 }
 
 void sh_report(sh_instance *instance, sh_status status, const char *format, ...)
@@ -74,16 +38,20 @@ void sh_report(sh_instance *instance, sh_status status, const char *format, ...)
     va_start(arguments, format);
     (void)vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    (void)sh_make_utf8(text); /* may contain text of the importer, or be cut inside a character */
+    make_ascii(text);
     sh_deliver(instance, status, KNOWN[status].name, text);
 }
 
-sh_status sh_find_categories(sh_instance *instance, size_t count, const char *const categories[],
+sh_status sh_find_categories(void *handle, size_t count, const char *const categories[],
                              unsigned *found, const char *function)
 {
+    sh_instance *instance = sh_enter(handle, SH_ANY, function);
     sh_status status = SH_OK;
     size_t i, k;
 
+    if (instance == NULL || (count > 0 && !sh_has(instance, categories, function, "categories"))) {
+        return SH_ERROR;
+    }
     *found = count > 0 ? 0 : SH_LOG_ALL;
     for (i = 0; i < count; ++i) {
         unsigned category = 0;

@@ -19,15 +19,12 @@ void sh_deliver(const sh_instance *instance, sh_status status, const char *categ
                 const char *text);
 
 /* Writes the SH_LOG_* of some categories to *found, SH_LOG_ALL if count is 0. Unknown categories
- * are ignored, with a warning.
+ * are ignored, with a warning. `handle` is from the importer, and may be NULL.
  */
-sh_status sh_find_categories(sh_instance *instance, size_t count, const char *const categories[],
+sh_status sh_find_categories(void *handle, size_t count, const char *const categories[],
                              unsigned *found, const char *function);
 
 /* Copies text, with every `special` character twice; at most size - 1 characters. */
 void sh_double(char *copy, size_t size, const char *text, char special);
-
-/* Replaces every byte that is not part of UTF-8 by '?'; returns 1 if there was such a byte. */
-int sh_make_utf8(char *text);
 
 #endif

@@ -61,27 +61,24 @@ sh_status sh_initialize(sh_instance *instance)
     return SH_OK;
 }
 
-sh_status sh_set_up(sh_instance *instance, const sh_experiment *experiment, const char *function)
+sh_status sh_set_up(void *handle, double start_time, double stop_time, const char *function)
 {
-    const sh_experiment *e = experiment;
+    sh_instance *instance = sh_enter(handle, SH_INSTANTIATED, function);
 
-    if (e->tolerance_defined && !(e->tolerance >= 0.0 && isfinite(e->tolerance))) {
-        sh_report(instance, SH_ERROR,
-                  "%s: tolerance = %.9g; expected a finite number, not below 0.", function,
-                  e->tolerance);
+    if (instance == NULL) {
         return SH_ERROR;
     }
-    if (!isfinite(e->start_time)) {
-        sh_report(instance, SH_ERROR, "%s: startTime = %g is not finite.", function, e->start_time);
+    if (!isfinite(start_time)) {
+        sh_report(instance, SH_ERROR, "%s: startTime = %g is not finite.", function, start_time);
         return SH_ERROR;
     }
-    if (e->stop_time_defined && !(e->stop_time >= e->start_time)) {
+    if (!(stop_time >= start_time)) {
         sh_report(instance, SH_ERROR, "%s: stopTime = %.9g is before startTime = %.9g.", function,
-                  e->stop_time, e->start_time);
+                  stop_time, start_time);
         return SH_ERROR;
     }
-    instance->time = e->start_time;
-    instance->stop_time = e->stop_time_defined ? e->stop_time : INFINITY;
+    instance->time = start_time;
+    instance->stop_time = stop_time;
     return SH_OK;
 }
 

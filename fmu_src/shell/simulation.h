@@ -15,9 +15,6 @@ sh_instance *sh_create(const sh_importer *importer, const char *name, const char
 void *sh_refuse_instance(const sh_importer *importer, const char *function, const char *wanted);
 void sh_destroy(sh_instance *instance);
 
-/* Back to the state after sh_create, with all start values. The categories of messages stay. */
-void sh_reset(sh_instance *instance);
-
 /* NULL, after a message that the function is not allowed in this state. */
 sh_instance *sh_refuse_call(sh_instance *instance, const char *function);
 
@@ -47,23 +44,20 @@ static inline int sh_has(sh_instance *instance, const void *pointer, const char 
 void *sh_allocate(const sh_importer *importer, size_t size);
 void sh_release(const sh_importer *importer, void *memory);
 
-/* The experiment that the importer announces, and its start: times in s. */
-typedef struct {
-    int tolerance_defined;
-    double tolerance;
-    double start_time;
-    int stop_time_defined;
-    double stop_time;
-} sh_experiment;
-
-/* Refuses values that are not finite or in the wrong order. The tolerance has no effect. */
-sh_status sh_set_up(sh_instance *instance, const sh_experiment *experiment, const char *function);
-
 /* The course of a simulation. `handle` is from the importer, and may be NULL. */
+
+/* Start and end of the experiment that the importer announces [s]; without an end, it is infinite.
+ * Refuses times that are not finite or in the wrong order.
+ */
+sh_status sh_set_up(void *handle, double start_time, double stop_time, const char *function);
+
 sh_status sh_begin_initialization(void *handle, const char *function);
 sh_status sh_end_initialization(void *handle, const char *function);
 sh_status sh_communication_step(void *handle, double t, double h, const char *function);
 sh_status sh_terminate(void *handle, const char *function);
+
+/* Back to the state after sh_create, with all start values. The categories of messages stay. */
+sh_status sh_reset(void *handle, const char *function);
 
 /* Checks constraints between parameters, if a parameter was set since the last check. */
 sh_status sh_check_parameters(sh_instance *instance);

@@ -460,35 +460,22 @@ def test_in_fmi_3_named_log_categories_are_turned_on_and_off(fmi3: Fmi) -> None:
         assert logged(fmu) == [error]
 
 
-@pytest.mark.parametrize(
-    ("name", "shown"),
-    [
-        ("Gel\udce4nk", "Gel?nk"),
-        ("\udced\udca0\udc80", "???"),
-        ("Gelenk \u00fc \u03c3\u0302 \u20ac \U0001f9be", None),
-        ("100 %s", None),
-    ],
-)
-def test_the_name_of_an_instance_is_shown_without_bytes_that_are_not_utf8(
-    name: str, shown: str | None
-) -> None:
-    with FMI2(name=name, logging_on=False) as fmu:
-        assert [status for status, _, _ in fmu.messages] == [WARNING] * (shown is not None)
-        assert all("not UTF-8" in text and str(shown) in text for _, _, text in fmu.messages)
-        fmu.initialise()
+@pytest.mark.parametrize("name", ["Gelenk \u00fc \u03c3\u0302 \u20ac \U0001f9be", "100 %s"])
+def test_the_logger_gets_the_name_of_the_instance(name: str) -> None:
+    with FMI2(name=name, logging_on=False).initialise() as fmu:
         assert fmu.step(5.0, 1e-3) == ERROR
-        assert fmu.names == {shown or name}
+        assert fmu.names == {name}
 
 
-def test_messages_about_texts_that_are_not_utf8_are_utf8() -> None:
+def test_messages_show_texts_of_the_importer_in_ascii() -> None:
+    """So they are UTF-8, whatever the importer gave, and wherever a long message is cut."""
     with FMI2(token="{\udcff}") as fmu:
         assert "{?}" in fmu.last_message
     with FMI2() as fmu:
         assert choose(fmu, True, b"log\xc3(") == WARNING
         assert "unknown category log?(" in fmu.last_message
-    for length in range(300, 304):  # a long message is not cut inside a character
-        with FMI2(token="x" * (length - 300) + "\u20ac" * length) as fmu:
-            assert "\u20ac" * 50 in fmu.last_message
+    with FMI2(token="\u20ac" * 300) as fmu:
+        assert "?" * 150 in fmu.last_message and fmu.last_message.isascii()
 
 
 # Times
@@ -500,8 +487,6 @@ def test_messages_about_texts_that_are_not_utf8_are_utf8() -> None:
         ("startTime", {"start": math.inf}),
         ("stopTime = -1 is before startTime = 0", {"stop": -1.0}),
         ("stopTime", {"stop": math.nan}),
-        ("tolerance = ", {"tolerance": -1e-6}),
-        ("tolerance = ", {"tolerance": math.inf}),
     ],
 )
 def test_an_impossible_experiment_is_refused(said: str, times: dict[str, float], fmi: Fmi) -> None:
