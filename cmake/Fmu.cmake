@@ -103,12 +103,13 @@ endfunction()
 # sigmahat_add_plant(NAME): the FMU of a plant whose equations are in harness/sigmahat/plants.
 function(sigmahat_add_plant name)
   set(dir ${PROJECT_BINARY_DIR}/fmu/${name})
+  set(template ${PROJECT_SOURCE_DIR}/modelDescription/${name}.xml)
   file(GLOB equations CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/harness/sigmahat/plants/*.py
        ${PROJECT_SOURCE_DIR}/harness/sigmahat/export/*.py)
   add_custom_command(
     OUTPUT ${dir}/plant_functions.c ${dir}/plant_functions.h
-    COMMAND ${SIGMAHAT_RUN} sigmahat.export.plant_codegen ${name} ${dir}
-    DEPENDS ${equations} ${PROJECT_SOURCE_DIR}/modelDescription/${name}.xml
+    COMMAND ${SIGMAHAT_RUN} sigmahat.export equations ${template} ${dir}
+    DEPENDS ${equations} ${template}
             ${PROJECT_SOURCE_DIR}/modelDescription/plant_macros.xml
     COMMENT "Equations of ${name}" VERBATIM)
   sigmahat_add_fmu(${name} STRUCT sh_plant STORAGE arrays SOURCES

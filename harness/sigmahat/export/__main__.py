@@ -8,6 +8,7 @@ import click
 
 _STEPS = {
     "describe": "description.write template out sources... --version --struct --storage",
+    "equations": "plant_codegen.write_own template folder",
     "pack": "archive.pack fmu sources... --fmi --described --binary --licence --shown",
     "document": "documentation.write template out --version",
     "system": "system.write ssp plant estimator --templates --version",

@@ -128,8 +128,8 @@ static const sh_variable VARIABLES[] = {{
 _LARGEST = {"rls.n": "SH_MAX_N", "rls.m": "SH_MAX_M"}  # sizes that can be given to the compiler
 
 
-def parameter_table(template: Path) -> str:
-    """The text of the file for the template of an estimator with one motor.
+def write_parameters(template: Path, out: Path) -> None:
+    """Write ``c/parameters.inc`` from the template of an estimator with one motor.
 
     The coefficients ``rls.eta_0`` are not in the table: they start at 0, and have no limits.
     """
@@ -140,7 +140,7 @@ def parameter_table(template: Path) -> str:
             macro = "REAL" if variable[0].tag == "Real" else "INTEGER"
             rows[macro].append(f"    {macro}({', '.join(_row(root, variable))})")
     reals, integers = map("\n".join, rows.values())
-    return f"""\
+    text = f"""\
 /* Generated from modelDescription/ by the target parameter_table; do not edit.
  * A row: place in sh_parameters, start, least and largest value, range in words.
  */
@@ -152,10 +152,7 @@ static const integer_parameter INTEGERS[] = {{
 {integers}
 }};
 """
-
-
-def write_parameters(template: Path, out: Path) -> None:
-    out.write_text(parameter_table(template), encoding="utf-8")
+    out.write_text(text, encoding="utf-8")
 
 
 def _row(root: Element, variable: Element) -> tuple[str, ...]:

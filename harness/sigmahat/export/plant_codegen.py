@@ -1,10 +1,6 @@
-"""C code of a plant from its equations: ``plant_functions.c`` and ``plant_functions.h``.
-
-``python -m sigmahat.export.plant_codegen AwasPlant FOLDER``
-"""
+"""C code of a plant from its equations: ``plant_functions.c`` and ``plant_functions.h``."""
 
 import re
-import sys
 from collections.abc import Iterable, Sequence
 from importlib import import_module
 from pathlib import Path
@@ -72,8 +68,6 @@ class Elimination:
             x[pivot] *= rows[pivot][pivot]
         return ca.vertcat(*x)
 
-
-_TEMPLATES = Path(__file__).parents[3] / "modelDescription"
 
 # CasADi keeps truth values in doubles, and all its functions have the same arguments.
 _QUIET = """\
@@ -183,18 +177,14 @@ def _compare(plant: PlantEquations, kind: str, own: Iterable[str], wanted: Itera
         raise ValueError(f"{plant.name}: the model description has no {kind} {name}")
 
 
-def main(name: str, folder: str) -> None:
+def write_own(template: Path, folder: Path) -> None:
     """Write the code of a plant of this package, variables in the order of its template.
 
-    The equations of ``FlexibleJointPlant`` are in ``sigmahat.plants.flexible_joint``.
+    The equations of ``FlexibleJointPlant.xml`` are in ``sigmahat.plants.flexible_joint``.
     """
-    words = re.findall("[A-Z][a-z]*", name.removesuffix("Plant"))
+    words = re.findall("[A-Z][a-z]*", template.stem.removesuffix("Plant"))
     plant = import_module(f"sigmahat.plants.{'_'.join(words).lower()}").plant
-    root = templates.render(_TEMPLATES / f"{name}.xml", version="")
+    root = templates.render(template, version="")
     places = c_variables.storage_in_arrays(root)
     p, u, y = ([n for n, place in places.items() if place.startswith(f"{a}[")] for a in "puy")
-    write(plant, p, u, y, Path(folder))
-
-
-if __name__ == "__main__":
-    main(*sys.argv[1:])
+    write(plant, p, u, y, folder)

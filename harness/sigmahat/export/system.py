@@ -13,14 +13,13 @@ from sigmahat.export import archive
 from sigmahat.files.templates import environment
 from sigmahat.fmi.instance import Fmu, Value
 from sigmahat.paper.scenarios import scenario
-from sigmahat.runs.scenario import Scenario, Sine
+from sigmahat.runs.scenario import Scenario
 
 
 def write(ssp: Path, plant: Path, estimator: Path, templates: Path, version: str) -> None:
     """Write the SSP of this version from the two FMUs and the folder of its Jinja2 templates.
 
-    Equal FMUs and templates give equal bytes. Raises ValueError if the scenario changes an
-    enumeration from the FMU's start value, or has an input that is no sine.
+    Equal FMUs and templates give equal bytes.
     """
     table1 = scenario("table1")
     residual = table1.estimators["RESIDUAL"]
@@ -56,17 +55,15 @@ def write(ssp: Path, plant: Path, estimator: Path, templates: Path, version: str
 
 
 def torques(table1: Scenario) -> dict[str, Value]:
-    """The torques of the scenario as the sines that the plant adds to its inputs.
+    """The torques of the scenario, all of them sines, as those that the plant adds to its inputs.
 
-    So the system moves without other inputs. Raises ValueError for a signal that is no sine.
+    So the system moves without other inputs.
     """
-    start: dict[str, Value] = {}
-    for name, signal in table1.plant.inputs.items():
-        if not isinstance(signal, Sine) or signal.phase:
-            raise ValueError(f"{name}: expected a sine without a phase, the scenario has {signal}")
-        for part in ("amplitude", "frequency"):
-            start[f"signal.{name}.{part}"] = getattr(signal, part)
-    return start
+    return {
+        f"signal.{name}.{part}": getattr(signal, part)
+        for name, signal in table1.plant.inputs.items()
+        for part in ("amplitude", "frequency")
+    }
 
 
 def _element(
@@ -85,17 +82,13 @@ def _parameters(fmu: Fmu, start: Mapping[str, Value]) -> list[dict[str, Any]]:
     """All parameters except enumerations, and initial estimates, which are zero.
 
     Importers disagree on the form of an enumeration: the standard requires the name of the item,
-    FMPy requires its number. So enumerations keep the start values of the FMU.
+    FMPy requires its number. So enumerations keep the start values of the FMU, which are those of
+    the scenario.
     """
-    own, listed = fmu.parameters({}), []
+    listed = []
     for name, value in fmu.parameters(start).items():
         variable = fmu.variable(name)
-        if variable.type == "Enumeration":
-            if value != own[name]:
-                raise ValueError(
-                    f"{fmu.name}.{name}: the SSP keeps {own[name]}, but the scenario has {value}"
-                )
-        elif not name.startswith("rls.eta_0"):
+        if variable.type != "Enumeration" and not name.startswith("rls.eta_0"):
             text = str(bool(value)).lower() if variable.type == "Boolean" else repr(value)
             about = {"name": name, "type": variable.type, "value": text, "unit": variable.unit}
             listed.append(about)
