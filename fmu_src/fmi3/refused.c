@@ -64,6 +64,13 @@ REFUSED_WITH(GetAdjointDerivative, "adjoint derivatives", const fmi3ValueReferen
 REFUSED_WITH(GetOutputDerivatives, "derivatives of outputs (maxOutputDerivativeOrder is 0)",
              REFERENCES, const fmi3Int32 orders[], fmi3Float64 values[], size_t nValues)
 
+REFUSED_WITH(GetBinary, "variables of type Binary", REFERENCES, size_t valueSizes[],
+             fmi3Binary values[], size_t nValues)
+REFUSED_WITH(SetBinary, "variables of type Binary", REFERENCES, const size_t valueSizes[],
+             const fmi3Binary values[], size_t nValues)
+
+REFUSED_WITH(GetClock, "clocks", REFERENCES, fmi3Clock values[])
+REFUSED_WITH(SetClock, "clocks", REFERENCES, const fmi3Clock values[])
 REFUSED_WITH(GetIntervalDecimal, "clocks", REFERENCES, fmi3Float64 intervals[],
              fmi3IntervalQualifier qualifiers[])
 REFUSED_WITH(GetIntervalFraction, "clocks", REFERENCES, fmi3UInt64 counters[],

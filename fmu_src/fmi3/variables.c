@@ -16,21 +16,21 @@ const char *sh_type_name(sh_type type)
     }
 }
 
-#define CALL(function, types, type_of_values, length)                                              \
-    const sh_access access = {instance,        function,         types, type_of_values, 1,         \
-                              valueReferences, nValueReferences, length}
+#define CALL(function, types, type_of_values)                                                      \
+    const sh_access access = {instance,        function,         types,  type_of_values, 1,        \
+                              valueReferences, nValueReferences, nValues}
 
 #define ACCESS(Type, TYPES, VALUES)                                                                \
     fmi3Status fmi3Get##Type(fmi3Instance instance, const fmi3ValueReference valueReferences[],    \
                              size_t nValueReferences, fmi3##Type values[], size_t nValues)         \
     {                                                                                              \
-        CALL("fmi3Get" #Type, TYPES, VALUES, nValues);                                             \
+        CALL("fmi3Get" #Type, TYPES, VALUES);                                                      \
         return (fmi3Status)sh_get(&access, (void *)values);                                        \
     }                                                                                              \
     fmi3Status fmi3Set##Type(fmi3Instance instance, const fmi3ValueReference valueReferences[],    \
                              size_t nValueReferences, const fmi3##Type values[], size_t nValues)   \
     {                                                                                              \
-        CALL("fmi3Set" #Type, TYPES, VALUES, nValues);                                             \
+        CALL("fmi3Set" #Type, TYPES, VALUES);                                                      \
         return (fmi3Status)sh_set(&access, (const void *)values);                                  \
     }
 
@@ -48,39 +48,3 @@ ACCESS(UInt16, 0, SH_BYTES)
 ACCESS(UInt32, 0, SH_BYTES)
 ACCESS(UInt64, 0, SH_BYTES)
 ACCESS(String, 0, SH_BYTES)
-
-fmi3Status fmi3GetBinary(fmi3Instance instance, const fmi3ValueReference valueReferences[],
-                         size_t nValueReferences, size_t valueSizes[], fmi3Binary values[],
-                         size_t nValues)
-{
-    CALL("fmi3GetBinary", 0, SH_BYTES, nValues);
-
-    (void)valueSizes;
-    return (fmi3Status)sh_get(&access, (void *)values);
-}
-
-fmi3Status fmi3SetBinary(fmi3Instance instance, const fmi3ValueReference valueReferences[],
-                         size_t nValueReferences, const size_t valueSizes[],
-                         const fmi3Binary values[], size_t nValues)
-{
-    CALL("fmi3SetBinary", 0, SH_BYTES, nValues);
-
-    (void)valueSizes;
-    return (fmi3Status)sh_set(&access, (const void *)values);
-}
-
-fmi3Status fmi3GetClock(fmi3Instance instance, const fmi3ValueReference valueReferences[],
-                        size_t nValueReferences, fmi3Clock values[])
-{
-    CALL("fmi3GetClock", 0, SH_BYTES, nValueReferences);
-
-    return (fmi3Status)sh_get(&access, (void *)values);
-}
-
-fmi3Status fmi3SetClock(fmi3Instance instance, const fmi3ValueReference valueReferences[],
-                        size_t nValueReferences, const fmi3Clock values[])
-{
-    CALL("fmi3SetClock", 0, SH_BYTES, nValueReferences);
-
-    return (fmi3Status)sh_set(&access, (const void *)values);
-}
