@@ -170,17 +170,6 @@ def objects(z: Array) -> Iterator[Subject]:
     many = sigmahat.Estimator([{}] * JOINTS, OUTPUTS)
     count = JOINTS * (len(z) // 10)
     yield Subject(f"Estimator.run, {JOINTS} joints", lambda: many.run(**short), count)
-    regression = sigmahat.Estimator({"method": "FilteredRegression"}, OUTPUTS)
-    yield Subject("Estimator.run, FilteredRegression", lambda: regression.run(**columns), len(z))
-    row = z[0].tolist()
-    named = dict(zip(MEASUREMENTS, row, strict=True))
-    few = max(len(z) // 100, 1)
-
-    def ticks() -> None:
-        for _ in range(few):
-            one.tick(**named)
-
-    yield Subject("Estimator.tick", ticks, few)
 
 
 def whole(z: Array) -> Iterator[Subject]:
