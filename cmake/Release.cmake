@@ -47,5 +47,14 @@ add_custom_command(
           pyproject.toml ${packages_release} StiffnessEstimator
   COMMENT "Wheels and source distribution" VERBATIM)
 
+# What is in all of them, and what made them. The Modelica package is a target of its own.
+set(bill ${release}/sigmahat.cdx.json)
+add_custom_command(
+  OUTPUT ${bill}
+  COMMAND ${SIGMAHAT_RUN} sigmahat.export bill ${bill} ${release} --version ${PROJECT_VERSION}
+  DEPENDS ${released_2} ${released_3} ${release}/sigmahat-awas.ssp ${release}/python.stamp
+          ${release}/sigmahat-modelica.zip ${packages_release}
+          harness/sigmahat/export/bill.py
+  COMMENT "Bill of materials" VERBATIM)
 add_custom_target(release DEPENDS ${released_2} ${released_3} ${release}/sigmahat-awas.ssp
-                                  ${release}/python.stamp)
+                                  ${release}/python.stamp ${bill})

@@ -1,24 +1,65 @@
-"""Wheels of the release; archives are the same wherever they are packed."""
+"""Wheels and bill of materials of the release; archives are the same wherever they are packed."""
 
+import hashlib
 import json
 import os
 import shutil
 import sys
 import sysconfig
 from pathlib import Path
+from typing import Any
 from zipfile import ZipFile
 
 import pytest
+from cyclonedx.schema import SchemaVersion
+from cyclonedx.validation.json import JsonStrictValidator
 
 import sigmahat
 from controllers import run
 from released_fmus import FMUS
-from sigmahat.export import distribution, modelica
+from sigmahat.export import bill, distribution, modelica
 
 REPOSITORY = Path(__file__).parents[2]
 OLD = 86400.0  # [s] since 1970
 EXTENSIONS = {"manylinux_2_17_x86_64": ".so", "win_amd64": ".dll", "macosx_11_0_x86_64": ".dylib"}
 each_platform = pytest.mark.parametrize("tag", EXTENSIONS)
+
+
+@pytest.fixture(scope="module")
+def contents(released: Path) -> dict[str, Any]:
+    found: dict[str, Any] = json.loads((released / bill.NAME).read_text(encoding="utf-8"))
+    return found
+
+
+def test_the_bill_fits_the_schema(released: Path) -> None:
+    text = (released / bill.NAME).read_text(encoding="utf-8")
+    assert JsonStrictValidator(SchemaVersion.V1_6).validate_str(text) is None
+
+
+def test_the_bill_has_every_file_of_the_release_with_its_hash(
+    released: Path, contents: dict[str, Any]
+) -> None:
+    listed = {
+        each["name"]: each["hashes"][0]["content"]
+        for each in contents["components"]
+        if each["type"] == "file"
+    }
+    other = {bill.NAME, "python.stamp"}
+    files = [f for f in released.rglob("*") if f.is_file() and f.name not in other]
+    expected = {
+        f.relative_to(released).as_posix(): hashlib.sha256(f.read_bytes()).hexdigest()
+        for f in files
+    }
+    assert listed == expected
+
+
+def test_the_bill_says_what_is_in_a_file(contents: dict[str, Any]) -> None:
+    inside = {each["ref"]: set(each.get("dependsOn", [])) for each in contents["dependencies"]}
+    plant, estimator = inside["AwasPlant_FMI3.fmu"], inside["StiffnessEstimator.fmu"]
+    assert plant - estimator == {"equations that CasADi wrote as C"}
+    wheel = next(name for name in inside if name.endswith("win_amd64.whl"))
+    assert {"numpy", "fmpy", "pyarrow"} <= inside[wheel]
+    assert "ziglang" in {each["name"] for each in contents["metadata"]["tools"]["components"]}
 
 
 def older(folder: Path, copy: Path) -> Path:
@@ -27,6 +68,12 @@ def older(folder: Path, copy: Path) -> Path:
     for file in copy.rglob("*"):
         os.utime(file, (OLD, OLD))
     return copy
+
+
+def test_the_bill_is_the_same_from_another_folder(released: Path, tmp_path: Path) -> None:
+    copy = older(released, tmp_path / "elsewhere")
+    bill.write(copy / bill.NAME, copy, sigmahat.__version__)
+    assert (copy / bill.NAME).read_bytes() == (released / bill.NAME).read_bytes()
 
 
 def test_the_modelica_package_made_elsewhere_is_the_same(

@@ -14,6 +14,7 @@ _STEPS = {
     "system": "system.write ssp plant estimator --templates --version",
     "release": "cross_compiler.release fmu out --cache",
     "distribute": "distribution.write out contents... --project --sources... --includes... --cache",
+    "bill": "bill.write out release --version",
     "live": "web.write out fmus... --page --cache",
     "amalgamate": "amalgamation.write out sources... --interface --licence --version",
     "parameters": "c_variables.write_parameters template out",
