@@ -1,4 +1,4 @@
-"""The loop over samples: in C as in Python, to the last bit, and with FMUs of other makers."""
+"""The loop over samples: what it refuses, interrupts, and FMUs of other makers."""
 
 import logging
 import os
@@ -12,70 +12,37 @@ import numpy as np
 import pytest
 
 import sigmahat
-from command_line import working_in
 from controllers import run
-from recorded_logs import CONFIGURATION, awas_log, write_log
 from sigmahat.fmi import native
 from sigmahat.fmi.instance import Fmu, FmuError, Slave
 from sigmahat.fmi.interrupts import interrupts_wait
-from sigmahat.fmi.master import Plant, Recording, simulate
+from sigmahat.fmi.master import Plant, simulate
 from sigmahat.fmi.sample_loop import SampleLoop
 from sigmahat.paper.scenarios import scenario
-from sigmahat.runs.scenario import Scenario, T
+from sigmahat.runs.scenario import T
 
 TABLE1 = scenario("table1")
 
 
-@pytest.fixture
-def without_c(monkeypatch: pytest.MonkeyPatch) -> pytest.MonkeyPatch:
-    """Call its undo() for the loop in C."""
-    monkeypatch.setattr(native, "library", lambda: None)
-    return monkeypatch
-
-
-def short(whole: Scenario) -> Recording:
-    """300 steps with all outputs of all FMUs."""
-
-    def outputs(fmu: str) -> list[str]:
-        with Fmu(sigmahat.fmu(fmu)) as opened:
-            return [n for n, v in opened.variables.items() if v.causality == "output"]
-
-    estimators = {**whole.estimators, **whole.variants}
-    return simulate(
-        replace(whole.plant, record=outputs(whole.plant.fmu)),
-        {name: replace(e, record=outputs(e.fmu)) for name, e in estimators.items()},
-        whole.T,
-        300,
-    )
-
-
-@pytest.mark.parametrize("name", ["table1", "antagonistic", "single-hardening"])
-def test_c_and_python_give_the_same_bits(name: str, without_c: pytest.MonkeyPatch) -> None:
-    in_python = short(scenario(name))
-    without_c.undo()
-    in_c = short(scenario(name))
-    every = [(in_python.plant, in_c.plant)]
-    every += [(each, in_c.estimators[name]) for name, each in in_python.estimators.items()]
-    for one, other in every:
-        assert one.values.keys() == other.values.keys()
-        for variable in one.values:
-            np.testing.assert_array_equal(one[variable], other[variable], err_msg=variable)
-
-
-def test_a_refused_step_ends_both_with_the_message_of_the_fmu(
-    without_c: pytest.MonkeyPatch,
-) -> None:
+def test_a_refused_step_ends_it_with_the_message_of_the_fmu() -> None:
     def input_is_lost(t: np.typing.NDArray[np.float64]) -> np.typing.NDArray[np.float64]:
         return np.where(t < 0.0105, 0.1, np.nan)
 
     plant = replace(TABLE1.plant, inputs={"tau": input_is_lost})
-    messages = []
-    for _ in range(2):
-        with pytest.raises(FmuError, match=r"Step from t = 0\.01 s refused.* finite") as caught:
-            simulate(plant, {}, T, 20)
-        messages.append(str(caught.value))
-        without_c.undo()
-    assert messages[0] == messages[1]
+    with pytest.raises(FmuError, match=r"Step from t = 0\.01 s refused.* finite"):
+        simulate(plant, {}, T, 20)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "reason"),
+    [("folder", Path, "No such file"), ("_INTERFACE", 0, "it is of another version")],
+)
+def test_a_library_that_cannot_be_used(
+    name: str, value: object, reason: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(native, name, value)
+    with pytest.raises(FmuError, match=rf"native.*: not a usable library \(.*{reason}.*again"):
+        native.library.__wrapped__()
 
 
 def test_calls_are_made_in_their_order_up_to_the_one_that_fails() -> None:
@@ -148,24 +115,6 @@ def test_interrupts_at_any_moment_end_it_and_leave_it_whole() -> None:
     logging.getLogger("sigmahat").propagate = True
     assert interrupted >= 55  # Python itself drops one that comes in a finalizer
     assert len(simulate(plant, {}, T, 10).plant["sigma"]) == 11
-
-
-def test_a_log_is_replayed_without_the_library(
-    without_c: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    log = awas_log(4.0, 0.3, duration=0.25)
-    del log["true"]
-    write_log(log, tmp_path / "a.csv")
-    (tmp_path / "a.toml").write_text(CONFIGURATION, encoding="utf-8")
-    found: list[dict[str, Any]] = []
-    for name in ("python", "c"):
-        opened = sigmahat.open_log(tmp_path / "a.csv")
-        configuration = sigmahat.read_configuration(tmp_path / "a.toml")
-        (tmp_path / name).mkdir()
-        with working_in(tmp_path):
-            found.append(sigmahat.estimate(opened, configuration, tmp_path / name).as_dict())
-        without_c.undo()
-    assert repr(found[0]) == repr(found[1])
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork")

@@ -14,7 +14,6 @@ import sigmahat
 from controllers import run
 from fmi_instance import OK, Instance
 from recordings import one_seed
-from sigmahat.fmi import native
 from sigmahat.fmi.instance import Fmu, Slave
 from sigmahat.fmi.sample_loop import Recorder, SampleLoop
 
@@ -192,12 +191,6 @@ def test_tuned_parameters_have_their_effect_while_it_runs(
             assert fmu.step(k * T, T) == OK
         assert [now[name] for name in ("sigma", "sigma_std")] == fmu.get_all(["sigma", "sigma_std"])
     assert estimator.parameters[0]["noise.tau"] == 0.1
-
-
-def test_without_a_library_the_message_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(native, "library", lambda: None)
-    with pytest.raises(RuntimeError, match="no library for this platform"):
-        sigmahat.Estimator({})
 
 
 def test_ctrl_c_ends_a_long_run() -> None:

@@ -4,13 +4,13 @@ Python calls the library with ctypes, so that other threads of Python can run me
 """
 
 import ctypes
-import logging
 from functools import lru_cache
 from typing import Any
 
 import fmpy
 
 from sigmahat.fmi.installed import folder
+from sigmahat.fmi.instance import FmuError
 
 _INTERFACE = 2  # as in harness/native/sample_loop.c
 _POINTER, _SIZE, _NUMBER = ctypes.c_void_p, ctypes.c_size_t, ctypes.c_uint
@@ -28,27 +28,18 @@ _FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
 }
 """Result and arguments of the functions in harness/native/*.h."""
 
-_log = logging.getLogger("sigmahat")
-
 
 @lru_cache
-def library() -> ctypes.CDLL | None:
-    """The library of this installation; None without a library for this platform.
-
-    A warning reports a library that does not work.
-    """
+def library() -> ctypes.CDLL:
+    """The library of this installation. Raises FmuError if it is missing or of another version."""
     path = folder() / f"sigmahat_native{fmpy.sharedLibraryExtension}"
-    if not path.is_file():
-        return None
     try:
         found = ctypes.CDLL(str(path))
-        if found.sh_native_interface() == _INTERFACE:
-            for name, (result, arguments) in _FUNCTIONS.items():
-                function = getattr(found, name)
-                function.restype, function.argtypes = result, arguments
-            return found
-        reason = "it is of another version"
+        if found.sh_native_interface() != _INTERFACE:
+            raise OSError("it is of another version")
+        for name, (result, arguments) in _FUNCTIONS.items():
+            function = getattr(found, name)
+            function.restype, function.argtypes = result, arguments
     except (OSError, AttributeError) as error:
-        reason = str(error)
-    _log.warning("%s cannot be used, so simulations are slow: %s; install again", path, reason)
-    return None
+        raise FmuError(f"{path}: not a usable library ({error}); install or build again") from error
+    return found

@@ -1,4 +1,4 @@
-"""The calls that a co-simulation makes for every sample, in C or in Python, and recorders."""
+"""The calls that a co-simulation makes for every sample, and recorders."""
 
 from __future__ import annotations
 
@@ -97,19 +97,13 @@ class SampleLoop:
         if not 0 <= first <= end <= min(rows, default=end):
             raise ValueError(f"expected samples within {min(rows)} rows, got {first} to {end}")
         with interrupts_wait():  # else Ctrl-C is lost if the FMU calls back
-            refused = self._run(first, end)
-        if refused < len(self._calls):
+            if self._native is None:
+                self._native = (_Call * len(self._calls))(*self._calls)
+            count = len(self._calls)
+            refused = native.library().sh_sample_loop(self._native, count, first, end)
+        if refused < count:
             call = self._calls[refused]
             raise call.slave.failure(f"{call.callee.__name__} failed")
-
-    def _run(self, first: int, end: int) -> int:
-        """Returns the index of the call that failed, or the number of calls."""
-        library = native.library()
-        if library is None:
-            return _run_in_python(self._calls, first, end)
-        if self._native is None:
-            self._native = (_Call * len(self._calls))(*self._calls)
-        return int(library.sh_sample_loop(self._native, len(self._calls), first, end))
 
     def _add(self, *fields: Any) -> None:
         self._calls.append(_Call(*fields))
@@ -119,22 +113,6 @@ class SampleLoop:
 def step_times(t: NDArray[np.float64], h: float | NDArray[np.float64]) -> NDArray[np.float64]:
     """The table for SampleLoop.step(): communication points t and step or steps h [s]."""
     return np.column_stack(np.broadcast_arrays(t, h))
-
-
-def _run_in_python(calls: list[_Call], first: int, end: int) -> int:
-    """The loop in Python: it defines the loop in C, and replaces a missing C library."""
-    tables = [c.table if c.table.flags.writeable else c.table.copy() for c in calls]
-    rows: list[Any] = [np.ctypeslib.as_ctypes(table) for table in tables]
-    for k in range(first, end):
-        for place, (call, table) in enumerate(zip(calls, rows, strict=True)):
-            row = table[k] if call.table.ndim == 2 else table
-            if call.kind == _DO_STEP:
-                arguments = [*row, fmi2.fmi2True]
-            else:
-                arguments = [call.given[0], call.count, *call.given[1:], row]
-            if call.callee(call.slave.component, *arguments) > fmi2.fmi2Warning:
-                return place
-    return len(calls)
 
 
 _KINDS = {"Real": "Real", "Integer": "Integer", "Enumeration": "Integer", "Boolean": "Boolean"}
