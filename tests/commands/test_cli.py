@@ -19,8 +19,8 @@ from recorded_logs import CONFIGURATION, awas_log, write_log
 from sigmahat.cli import cli
 from sigmahat.fmi import installed
 from sigmahat.paper.scenarios import SCENARIOS
-from sweeps import QUICK
 
+QUICK = "sweep --modality RESIDUAL"
 MOTION = "motion --angle 0.8 --velocity 1.5 --torque 60 --deformation 0.03"
 
 

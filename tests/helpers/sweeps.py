@@ -1,12 +1,16 @@
 """Sweeps as a user starts them, in a process of their own."""
 
 import shlex
+import sqlite3
 import subprocess
 import sys
 import time
 from collections.abc import Callable
+from contextlib import closing
 from pathlib import Path
 from typing import Any
+
+from sigmahat.sweep.job import NAME
 
 QUICK = "sweep --modality RESIDUAL"
 """One run takes a fraction of a second."""
@@ -18,11 +22,6 @@ def start(command: str) -> subprocess.Popen[str]:
     return subprocess.Popen(arguments, stdout=pipe, stderr=pipe, text=True)
 
 
-def records(path: Path) -> list[bytes]:
-    """Complete lines so far, without the first, which names the sweep."""
-    return path.read_bytes().splitlines(keepends=True)[1:] if path.exists() else []
-
-
 def wait_until(is_so: Callable[[], bool], process: subprocess.Popen[Any]) -> None:
     """Waits while a process goes on."""
     deadline = time.monotonic() + 300
@@ -30,3 +29,15 @@ def wait_until(is_so: Callable[[], bool], process: subprocess.Popen[Any]) -> Non
         assert process.poll() is None, process.communicate()
         assert time.monotonic() < deadline
         time.sleep(0.02)
+
+
+def written(folder: Path) -> int:
+    """Number of runs that a sweep has written so far; nobody else may read its database."""
+    path = folder / NAME
+    return path.read_bytes().count(b'{"RESIDUAL": [') if path.exists() else 0
+
+
+def records(folder: Path) -> list[tuple[str, str]]:
+    """The runs in a folder, in the order in which they were written."""
+    with closing(sqlite3.connect(folder / NAME)) as file:
+        return file.execute("SELECT * FROM runs ORDER BY rowid").fetchall()

@@ -206,7 +206,7 @@ def test_fewer_points_of_a_long_signal_keep_every_peak(samples: int) -> None:
     [
         (None, "expected a folder of `sigmahat reproduce`, `estimate`, `sweep` or `compare`"),
         ({}, "no result of"),
-        ({"runs.jsonl": b""}, "a sweep that is not complete; run its command again"),
+        ({"runs.sqlite": b""}, "a sweep that is not complete; run its command again"),
         ({"sweep.parquet": b"PAR1 cut off"}, "not the table of a sweep; run the sweep again"),
         ({"estimate.parquet": b"PAR1 cut off"}, "parquet: damaged; run `sigmahat estimate` again"),
         ({"estimate.csv": b""}, "csv: not readable as CSV; run `sigmahat estimate` again"),

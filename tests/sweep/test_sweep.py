@@ -1,9 +1,9 @@
 """Sweeps: the right numbers, and none lost or done twice."""
 
 import csv
-import json
 import signal
-from dataclasses import replace
+import sqlite3
+from contextlib import closing
 from pathlib import Path
 
 import numpy as np
@@ -14,15 +14,16 @@ import scipy.stats
 from command_line import Shell
 from recordings import one_seed
 from sigmahat.runs.metrics import INDICES, Indices
-from sigmahat.sweep.job import Records, sweep
-from sigmahat.sweep.plan import Outcome, Plan, read_plan
+from sigmahat.sweep import job, preparation
+from sigmahat.sweep.job import NAME, Records, all_outcomes, sweep
+from sigmahat.sweep.plan import Outcome, Plan, Run, read_plan
 from sigmahat.sweep.table import read
-from sweeps import QUICK, records, start, wait_until
+from sweeps import QUICK, records, start, wait_until, written
 
 OUT = Path("out")
 FILES = {
-    ".runs.jsonl.lock", "distributions.png", "distributions.svg", "parameters.png",
-    "parameters.svg", "runs.jsonl", "summary.csv", "sweep.parquet",
+    "distributions.png", "distributions.svg", "parameters.png", "parameters.svg", NAME,
+    "summary.csv", "sweep.parquet",
 }  # fmt: skip
 
 
@@ -69,96 +70,81 @@ def test_killed_and_resumed_is_the_same_file(shell: Shell) -> None:
     command = f"{QUICK} --seeds 8 --set estimator.residual.K_I=200,300"
     # GIVEN a sweep in one go
     shell.run(f"{command} --out whole")
-    # WHEN another is killed in the middle, in the middle of a line
-    path = Path("killed", "runs.jsonl")
+    # WHEN another is killed in the middle
+    killed = Path("killed")
     process = start(f"{command} --out killed")
-    wait_until(lambda: len(records(path)) >= 2, process)
+    wait_until(lambda: written(killed) >= 2, process)
     workers = psutil.Process(process.pid).children(recursive=True)
     process.send_signal(signal.SIGKILL)
     process.communicate()
-    before = path.read_bytes()
-    assert 2 <= len(records(path)) < 16
-    path.write_bytes(before + b'{"numb')
     # THEN its workers are gone with it
     gone, alive = psutil.wait_procs(workers, timeout=300)
     assert (len(gone), alive) == (len(workers), [])
+    before = records(killed)
+    assert 2 <= len(before) < 16
     # AND the same command does the rest, and only that
     said = shell.run(f"{command} --out killed")
     assert shell.err == ""
-    assert path.read_bytes().startswith(before)
-    done_runs = [json.loads(line) for line in records(path)]
-    assert sorted((each["setting"], each["seed"]) for each in done_runs) == [
-        (setting, seed) for setting in (0, 1) for seed in range(1, 9)
-    ]
-    for name in FILES - {"runs.jsonl"}:
-        assert Path("whole", name).read_bytes() == Path("killed", name).read_bytes()
+    assert records(killed)[: len(before)] == before
+    assert len(records(killed)) == 16
+    for name in FILES - {NAME}:
+        assert Path("whole", name).read_bytes() == (killed / name).read_bytes()
     # AND once more, nothing is left to do
-    complete = path.read_bytes()
+    complete = (killed / NAME).read_bytes()
     assert shell.run(f"{command} --out killed") == said
-    assert path.read_bytes() == complete
+    assert (killed / NAME).read_bytes() == complete
 
 
-def made_up(path: Path, plan: Plan) -> dict[int, Outcome]:
-    """Adds an outcome of every run that the records in a file lack; returns all of them."""
-    opened = Records(path, plan)
-    for each in plan.runs:
-        if each.number not in opened.outcomes:
-            mse = 10 * float(each.parameters["plant.link.M"]) + each.seed
-            opened.add(Outcome(each.number, {"a": Indices(*[mse] * len(INDICES))}, None))
-    opened.close()
-    return opened.outcomes
+def test_a_run_is_not_repeated_in_any_plan(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    done: list[tuple[int, float]] = []
 
+    def execute(run: Run) -> Outcome:
+        mass = float(run.parameters["plant.link.M"])
+        done.append((run.seed, mass))
+        return Outcome({"a": Indices(*[10 * mass + run.seed] * len(INDICES))}, None)
 
-def test_more_seeds_wherever_a_sweep_was_killed(tmp_path: Path) -> None:
-    plans = [Plan(("table1",), seeds, (), {"plant.link.M": (1, 2, 3)}) for seeds in (1, 2, 4)]
-    path, killed = tmp_path / "runs.jsonl", tmp_path / "killed.jsonl"
-    expected = made_up(tmp_path / "whole.jsonl", plans[-1])
-    for plan in plans[:-1]:
-        made_up(path, plan)
-    # At the end of each line, and in the middle of the next one: the largest goes on from there.
-    lines = path.read_bytes().splitlines(keepends=True)
-    for count in range(len(lines)):
-        whole = b"".join(lines[:count])
-        for cut in (b"", lines[count][:20]):
-            killed.write_bytes(whole + cut)
-            assert made_up(killed, plans[-1]) == expected
-            assert killed.read_bytes().startswith(whole)
-    # AND none goes on with fewer seeds, or with other values
-    done = killed.read_bytes()
-    with pytest.raises(ValueError, match="with 4 seeds; expected as many or more, got 2; choose"):
-        Records(killed, plans[1])
-    others = [replace(plans[-1], parameters={"plant.link.M": v}) for v in ((1, 2), (1, 2, 4))]
-    for other in (*others, replace(others[0], seeds=6)):
-        with pytest.raises(ValueError, match="of another sweep, or of other FMUs; choose"):
-            Records(killed, other)
-    assert killed.read_bytes() == done
+    def outcomes(seeds: int, *masses: float) -> list[Outcome]:
+        """Of all runs of a plan; `done` has those that were done."""
+        plan = Plan(("table1",), seeds, (), {"plant.link.M": masses})
+        done.clear()
+        with closing(Records(tmp_path / NAME)) as opened:
+            return all_outcomes(plan, opened, lambda _: None)
+
+    monkeypatch.setattr(job, "execute", execute)
+    monkeypatch.setattr(job, "spread", lambda jobs: (each for each in enumerate(j() for j in jobs)))
+    assert len(outcomes(1, 1.0, 2.0)) == len(done) == 2
+    # More seeds: what is missing is done, and the outcomes are in the order of the plan.
+    found = outcomes(2, 1.0, 2.0)
+    assert done == [(2, 1.0), (2, 2.0)]
+    assert [each.indices["a"].mse for each in found] == [11, 12, 21, 22]
+    # Fewer seeds, and another value
+    assert [each.indices["a"].mse for each in outcomes(1, 2.0, 3.0)] == [21, 31]
+    assert done == [(1, 3.0)]
+    # Other FMUs
+    monkeypatch.setattr(preparation, "_fmu_digest", lambda name: "other")
+    assert len(outcomes(1, 1.0, 2.0)) == len(done) == 2
 
 
 @pytest.mark.slow("a sweep in processes of its own")
 def test_an_interrupt_keeps_what_is_done_and_another_sweep_is_refused(shell: Shell) -> None:
     command = f"{QUICK} --seeds 2000 --out out"
     process = start(command)
-    wait_until(lambda: len(records(OUT / "runs.jsonl")) >= 2, process)
+    wait_until(lambda: written(OUT) >= 2, process)
     assert shell.run(command, 2) == ""
-    assert "another sweep is writing to out" in shell.err
+    assert "database is locked; another sweep writes to this folder" in shell.err
     process.send_signal(signal.SIGINT)
     output, errors = process.communicate(timeout=300)
     assert (process.returncode, output) == (130, "")
     assert errors.split("\n") == ["", "sigmahat: interrupted", ""]
-    assert 2 <= len(records(OUT / "runs.jsonl")) < 2000
+    assert 2 <= len(records(OUT)) < 2000
 
 
-def test_records_that_do_not_fit(shell: Shell) -> None:
-    command, path = f"{QUICK} --seeds 2 --out out", OUT / "runs.jsonl"
-    shell.run(command)
-    good = path.read_bytes()
-    for damaged, words in (
-        (good.replace(b'"seed": 2', b'"seed": 1'), "line"),
-        (good + records(path)[0], "line 4: run"),
-        (b"\0" + good, "line 1: damaged; delete this file"),
-    ):
-        path.write_bytes(damaged)
-        assert words in shell.refused(command)
+def test_a_file_of_runs_that_is_in_use_or_damaged(shell: Shell) -> None:
+    OUT.mkdir()
+    with closing(Records(OUT / NAME)), pytest.raises(sqlite3.OperationalError, match="is locked"):
+        Records(OUT / NAME)
+    (OUT / NAME).write_bytes(b"no database" * 100)
+    assert "or the file is damaged; choose another folder" in shell.refused(f"{QUICK} --out out")
 
 
 def test_runs_that_fail_are_reported(shell: Shell) -> None:

@@ -11,10 +11,8 @@ from typing import Any
 
 
 @contextmanager
-def created_folder(path: Path, ignored: str = "") -> Iterator[None]:
+def created_folder(path: Path) -> Iterator[None]:
     """Creates a folder if it does not exist. At the end, a new folder without files is removed.
-
-    ignored  name of a file that does not count as a file, and is removed with the folder
 
     Raises OSError if the folder cannot be created.
     """
@@ -23,8 +21,6 @@ def created_folder(path: Path, ignored: str = "") -> Iterator[None]:
         path.mkdir(parents=True, exist_ok=True)
         yield
     finally:
-        if missing and [p.name for p in path.glob("*")] == [ignored]:
-            (path / ignored).unlink()
         for p in missing:
             with suppress(OSError):  # the folder is not empty
                 p.rmdir()

@@ -176,7 +176,7 @@ def report(folder: Path) -> str:
     for name, contents in kinds.items():
         if (folder / name).is_file():
             return _page(contents(folder))
-    if (folder / "runs.jsonl").is_file():
+    if (folder / "runs.sqlite").is_file():
         raise ValueError(f"{folder}: a sweep that is not complete; run its command again first")
     raise ValueError(
         f"{folder}: no result of `sigmahat reproduce`, `estimate`, `sweep` or `compare` "

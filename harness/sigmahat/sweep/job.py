@@ -1,111 +1,69 @@
-"""The job of `sigmahat sweep`: does the runs that are not done yet, and writes the results.
+"""The job of `sigmahat sweep`: does the runs that are not done yet, and writes the results."""
 
-A file has a line of JSON for each run that is done, so that a sweep can continue later. The first
-line identifies the sweep, with any number of seeds. Each run has its setting, which is the place of
-scenario and listed values in the plan, and its seed. So a sweep with more seeds can continue in the
-same file.
-"""
-
+import errno
 import json
-from collections.abc import Callable, Iterator
-from contextlib import closing, contextmanager
-from dataclasses import astuple, replace
+import sqlite3
+from contextlib import closing
+from dataclasses import astuple
 from functools import partial
 from pathlib import Path
-from typing import Any
-
-from filelock import FileLock, Timeout
 
 from sigmahat.files.output import created_folder, output_folder
 from sigmahat.runs.engine import Progress
 from sigmahat.runs.metrics import Indices
 from sigmahat.runs.pool import WorkersLostError, spread
 from sigmahat.sweep.cluster import spread_on_cluster
-from sigmahat.sweep.plan import Outcome, Plan
-from sigmahat.sweep.preparation import check, execute, fmu_digest, sweep_digest
+from sigmahat.sweep.plan import Outcome, Plan, Run
+from sigmahat.sweep.preparation import check, execute, identity
 from sigmahat.sweep.summary import write_summary
 from sigmahat.sweep.table import SweepTable, of_outcomes, write
 
-NAME = "runs.jsonl"
-_HINT = "choose another folder with --out, or delete this file"
+NAME = "runs.sqlite"
+_TABLE = """
+PRAGMA locking_mode = EXCLUSIVE;
+BEGIN EXCLUSIVE;
+CREATE TABLE IF NOT EXISTS runs (run TEXT PRIMARY KEY, indices TEXT);
+COMMIT;
+"""
 
 
 class Records:
-    """The outcomes of a sweep so far, by the number of the run."""
+    """The results of all runs that were ever done in a folder, as an SQLite file.
 
-    def __init__(self, path: Path, plan: Plan) -> None:
-        """Reads the file if it exists.
+    A later sweep with the same run does not repeat it, whatever else its plan has. A run that
+    failed is not recorded.
+    """
 
-        Raises ValueError, which says where and what to do, for a damaged file or another sweep.
-        """
-        self.path = path
-        self.outcomes: dict[int, Outcome] = {}
-        self._seeds = plan.seeds
-        lines = path.read_bytes().splitlines(keepends=True) if path.exists() else []
-        if lines and not lines[-1].endswith(b"\n"):
-            lines.pop()  # an incomplete line after a kill; its run is done again
-        head = {"sweep": sweep_digest(replace(plan, seeds=1))}
-        contents = [self._parse(line, i) for i, line in enumerate(lines, 1)]
-        if contents and contents[0] != head:
-            raise ValueError(f"{path} is of another sweep, or of other FMUs; {_HINT}")
-        seeds = max((each["seed"] for each in contents[1:]), default=0)
-        if seeds > plan.seeds:
-            raise ValueError(
-                f"{path} is of this sweep with {seeds} seeds; "
-                f"expected as many or more, got {plan.seeds}; {_HINT}"
-            )
-        for i, each in enumerate(contents[1:], 2):
-            number = each["setting"] * plan.seeds + each["seed"] - 1
-            if number in self.outcomes or not 0 <= number < plan.count:
-                raise ValueError(
-                    f"{path}, line {i}: run of setting {each['setting']}, seed {each['seed']} is "
-                    "there twice; delete this line and start again"
-                )
-            indices = {name: Indices(*values) for name, values in each["indices"].items()}
-            self.outcomes[number] = Outcome(number, indices, each["failure"])
-        self._file = path.open("ab")
-        self._file.truncate(sum(map(len, lines)))
-        if not lines:
-            self._write(head)
+    def __init__(self, path: Path) -> None:
+        """Opens or creates the file, for one process at a time. Raises sqlite3.DatabaseError."""
+        self._path = path
+        self._file = sqlite3.connect(path, timeout=0, isolation_level=None)
+        try:
+            self._file.executescript(_TABLE)
+            self._indices = dict(self._file.execute("SELECT run, indices FROM runs"))
+        except sqlite3.DatabaseError:
+            self._file.close()
+            raise
 
-    def add(self, outcome: Outcome) -> None:
-        """Writes an outcome to the file at once, so that a later kill does not lose it."""
-        self.outcomes[outcome.number] = outcome
-        setting, seed = divmod(outcome.number, self._seeds)
+    def outcome(self, run: Run) -> Outcome | None:
+        """The outcome of a run; None if it is not recorded."""
+        text = self._indices.get(identity(run))
+        if text is None:
+            return None
+        return Outcome({name: Indices(*each) for name, each in json.loads(text).items()}, None)
+
+    def add(self, run: Run, outcome: Outcome) -> None:
+        """Writes the outcome of a run at once, so that a later kill does not lose it."""
         indices = {name: astuple(each) for name, each in outcome.indices.items()}
-        place = {"setting": setting, "seed": seed + 1}
-        self._write({**place, "indices": indices, "failure": outcome.failure})
+        row = identity(run), json.dumps(indices)
+        self._file.execute("INSERT INTO runs VALUES (?, ?)", row)
+        self._indices.update([row])
 
     def close(self) -> None:
-        """Closes the file, and removes it if it has no outcome."""
+        """Closes the file, and removes it if it has no run."""
         self._file.close()
-        if not self.outcomes:
-            self.path.unlink()
-
-    def _write(self, content: dict[str, Any]) -> None:
-        self._file.write(json.dumps(content).encode() + b"\n")
-        self._file.flush()
-
-    def _parse(self, line: bytes, number: int) -> Any:
-        try:
-            return json.loads(line)
-        except ValueError as error:
-            what = "delete this file" if number == 1 else "delete this line"
-            raise ValueError(
-                f"{self.path}, line {number}: damaged; {what} and start again"
-            ) from error
-
-
-@contextmanager
-def records(folder: Path, plan: Plan) -> Iterator[Records]:
-    """The records of a sweep in a folder, for one process at a time. Raises as Records does."""
-    lock = folder / f".{NAME}.lock"
-    with created_folder(folder, ignored=lock.name):
-        try:
-            with FileLock(lock, timeout=0), closing(Records(folder / NAME, plan)) as opened:
-                yield opened
-        except Timeout as error:
-            raise ValueError(f"another sweep is writing to {folder}; wait for it") from error
+        if not self._indices:
+            self._path.unlink()
 
 
 def sweep(
@@ -115,21 +73,24 @@ def sweep(
 
     scheduler  address of the scheduler of the cluster, "tcp://host:port"
     progress   called with the number of runs done since the last call, first with the runs of
-               an earlier, interrupted call
+               earlier calls
 
-    Raises ValueError for a plan that does not fit its scenarios, for records that do not fit and
-    if every run failed, FmuError if an FMU refuses a listed value, WorkerError for workers that
-    are missing or lost, OSError for files that cannot be written.
+    Raises ValueError for a plan that does not fit its scenarios and if every run failed, FmuError
+    if an FMU refuses a listed value, WorkerError for workers that are missing or lost, OSError for
+    files that cannot be written.
     """
     check(plan)
-    with records(out, plan) as done:
-        progress(len(done.outcomes))
-        _run(plan, done, scheduler, progress)
-        failures = [o.failure for _, o in sorted(done.outcomes.items()) if o.failure]
+    with created_folder(out):
+        try:
+            with closing(Records(out / NAME)) as records:
+                outcomes = all_outcomes(plan, records, scheduler, progress)
+        except sqlite3.DatabaseError as error:
+            reason = f"{error}; another sweep writes to this folder, or the file is damaged"
+            raise OSError(errno.EIO, reason, str(out / NAME)) from error
+        failures = [each.failure for each in outcomes if each.failure]
         if len(failures) == plan.count:
-            done.outcomes.clear()  # nothing is worth keeping
             raise ValueError(f"every run failed, the first with: {failures[0]}")
-        table = of_outcomes(plan, done.outcomes)
+        table = of_outcomes(plan, outcomes)
         from sigmahat.plotting.figure import save, stacked
         from sigmahat.sweep.panels import against_parameters, distributions
 
@@ -142,21 +103,23 @@ def sweep(
     return table
 
 
-def _run(plan: Plan, done: Records, scheduler: str | None, progress: Progress) -> None:
-    """Does the remaining runs, and writes each outcome into the records."""
-    digests = {name: fmu_digest(name) for name in plan.scenarios}
-    jobs: list[Callable[[], Outcome]] = [
-        partial(execute, run, digests[run.scenario])
-        for run in plan.runs
-        if run.number not in done.outcomes
-    ]
+def all_outcomes(
+    plan: Plan, records: Records, scheduler: str | None, progress: Progress
+) -> list[Outcome]:
+    """The outcomes of all runs in their order: recorded, or of runs that are done now."""
+    outcomes = [records.outcome(run) for run in plan.runs]
+    missing = [run for run, found in zip(plan.runs, outcomes, strict=True) if found is None]
+    progress(plan.count - len(missing))
+    jobs = [partial(execute, run, identity(run)) for run in missing]
     if not jobs:
-        return
-    outcomes = spread_on_cluster(jobs, scheduler) if scheduler else spread(jobs)
+        return [each for each in outcomes if each is not None]
     try:
-        with closing(outcomes):
-            for _, outcome in outcomes:
-                done.add(outcome)
+        with closing(spread_on_cluster(jobs, scheduler) if scheduler else spread(jobs)) as done:
+            for place, outcome in done:
+                outcomes[missing[place].number] = outcome
+                if outcome.failure is None:
+                    records.add(missing[place], outcome)
                 progress(1)
     except WorkersLostError as error:
         raise WorkersLostError(f"{error}; the same command does the remaining runs") from error
+    return [each for each in outcomes if each is not None]

@@ -126,7 +126,6 @@ class Run:
 class Outcome:
     """The result of a run, or why the run failed."""
 
-    number: int  # number of the run
     indices: Mapping[str, Indices]  # indices by comparison; empty if the run failed
     failure: str | None  # why the run failed: an FMU refused a value, or an estimate is not finite
 

@@ -3,7 +3,7 @@
 import hashlib
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, replace
+from dataclasses import replace
 from functools import lru_cache
 
 from sigmahat.fmi.installed import fmu as installed_fmu
@@ -107,33 +107,30 @@ def models(scenario: Scenario) -> dict[str, Plant | EstimatorFmu]:
     return {PLANT: scenario.plant, **scenario.estimators}
 
 
-def fmu_digest(*scenarios: str) -> str:
-    """Digest of the installed FMUs of some scenarios: 32 hexadecimal digits."""
+def identity(run: Run) -> str:
+    """A text that differs between runs with different results; it does not have the number."""
+    fmus = _fmu_digest(run.scenario)
+    every = [fmus, run.scenario, run.modalities, run.seed, run.parameters]
+    return json.dumps(every, sort_keys=True)
+
+
+@lru_cache
+def _fmu_digest(name: str) -> str:
+    """Digest of the installed FMUs of a scenario: 32 hexadecimal digits."""
     text = hashlib.sha256()
-    for name in sorted({str(m.fmu) for each in scenarios for m in models(scenario(each)).values()}):
-        text.update(installed_fmu(name).read_bytes())
+    for fmu in sorted({str(model.fmu) for model in models(scenario(name)).values()}):
+        text.update(installed_fmu(fmu).read_bytes())
     return text.hexdigest()[:32]
 
 
-def sweep_digest(plan: Plan) -> str:
-    """Digest that differs between sweeps with different results: 32 hexadecimal digits."""
-    text = hashlib.sha256(fmu_digest(*plan.scenarios).encode())
-    for run in plan.runs:
-        text.update(json.dumps(asdict(run)).encode())
-    return text.hexdigest()[:32]
-
-
-def execute(run: Run, fmus: str) -> Outcome:
-    """Does a run. Raises WorkerError if the FMUs here have another digest."""
-    if _digest(run.scenario) != fmus:
+def execute(run: Run, known_as: str) -> Outcome:
+    """Does a run that has this identity. Raises WorkerError if the FMUs here are others."""
+    if identity(run) != known_as:
         raise WorkerError(
             "a worker has other FMUs than this machine; install the same sigmahat on both"
         )
     try:
         indices = measured(prepare(run), run.seed, indices_by_comparison)
     except (FmuError, ValueError) as error:
-        return Outcome(run.number, {}, " ".join(str(error).split()))
-    return Outcome(run.number, indices, None)
-
-
-_digest = lru_cache(fmu_digest)  # a worker reads the FMUs once
+        return Outcome({}, " ".join(str(error).split()))
+    return Outcome(indices, None)

@@ -115,8 +115,8 @@ def from_columns(columns: dict[Column, list[Any]]) -> SweepTable:
 _FAILED = Indices(*[math.nan] * len(INDICES))
 
 
-def of_outcomes(plan: Plan, outcomes: Mapping[int, Outcome]) -> SweepTable:
-    """The table of a complete sweep from its outcomes by number; rows in the order of the plan."""
+def of_outcomes(plan: Plan, outcomes: Sequence[Outcome]) -> SweepTable:
+    """The table of a complete sweep from its outcomes; rows in the order of the plan."""
     scenarios = {name: reduced(name, plan.modalities) for name in plan.scenarios}
     usual = {
         name: {o: installed(m.fmu).parameters(m.start) for o, m in models(each).items()}
@@ -142,8 +142,7 @@ def of_outcomes(plan: Plan, outcomes: Mapping[int, Outcome]) -> SweepTable:
     columns: dict[Column, list[Any]] = {
         column: [] for column in (*order, ESTIMATION, *INDICES.values(), FAILURE)
     }
-    for run in plan.runs:
-        outcome = outcomes[run.number]
+    for run, outcome in zip(plan.runs, outcomes, strict=True):
         chosen = parameters_by_owner(run.parameters, scenarios[run.scenario])
         given = {o: {**own, **chosen[o]} for o, own in usual[run.scenario].items()}
         for comparison in scenarios[run.scenario].comparisons:
