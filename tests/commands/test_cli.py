@@ -110,7 +110,7 @@ def test_a_command_imports_what_it_uses(command: str, slow: str, tmp_path: Path)
         ("sweep --modality RESIDUL", ["did you mean 'RESIDUAL'?"]),
         (f"{QUICK} --set plant.motor.D_theta", ["expected NAME=VALUES"]),
         (f"{QUICK} --seeds 0", ["--seeds"]),
-        (f"{QUICK} missing.toml", ["cannot read missing.toml"]),
+        (f"{QUICK} --scenario ''", ["unknown scenario ''"]),
         (f"{QUICK} --set 'estimator.motor.B=uniform(-2,-1)'", ["every run failed"]),
         (f"{QUICK} --scheduler tcp://127.0.0.1:9", ["no Dask scheduler at tcp://127.0.0.1:9"]),
         (f"{QUICK} --scheduler nonsense", ["start one with `dask scheduler`"]),

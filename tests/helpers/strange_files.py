@@ -84,15 +84,6 @@ def odd_configurations(draw: st.DrawFn) -> bytes:
     return bytes(data)
 
 
-@st.composite
-def odd_plans(draw: st.DrawFn) -> bytes:
-    """A plan of a sweep, none of which can be run."""
-    lines = [f"scenario = {draw(NUMBERS)}", f"seeds = {draw(NUMBERS)}", "[parameters]"]
-    lines += [f"plant.x{i} = {draw(NUMBERS)}" for i in range(draw(st.integers(0, 3)))]
-    ends = draw(st.sampled_from(["0:1:1e12", "0:1:-4", "a:b:c", "normal(1e999,1)", "uniform(2,1)"]))
-    return "\n".join([*lines, f'estimator.y = "{ends}"', "unknown.z = 1"]).encode()
-
-
 Trial = tuple[str, dict[str, bytes]]
 """A command, and the files that it finds in its folder."""
 
@@ -117,6 +108,5 @@ TRIALS = st.one_of(
     st.builds(_trial, st.sampled_from(["check log", "identify log --dry-run"]), _LOGS, _GOOD),
     st.builds(_trial, st.just("check log"), _USUAL, odd_configurations()),
     st.builds(_trial, st.just("estimate log"), _USUAL, odd_configurations()),
-    st.builds(lambda plan: ("sweep plan.toml", {"plan.toml": plan}), odd_plans()),
 )
-"""Commands with logs, configurations and plans that are damaged or made up."""
+"""Commands with logs and configurations that are damaged or made up."""

@@ -130,7 +130,7 @@ def test_the_scheduler_is_lost(
 
 
 def test_a_worker_with_other_fmus() -> None:
-    (first,) = read_plan(None, ("table1",), 1, ("RESIDUAL",)).runs
+    (first,) = read_plan(("table1",), 1, ("RESIDUAL",)).runs
     with pytest.raises(WorkerError, match="install the same sigmahat on both"):
         execute(first, "of other FMUs")
     assert execute(first, identity(first)).failure is None

@@ -29,7 +29,7 @@ FILES = {
 
 @pytest.mark.slow("a sweep and a reproduction of the same seed")
 def test_the_numbers_are_those_of_reproduce(tmp_path: Path) -> None:
-    table = sweep(read_plan(None, ("table1",), 1), tmp_path).table.to_pylist()
+    table = sweep(read_plan(("table1",)), tmp_path).table.to_pylist()
     assert len(table) == 4
     for row in table:
         indices = one_seed("table1").indices[0][row["estimation"]]

@@ -154,16 +154,15 @@ def scenarios() -> None:
 
 
 def _listed(_: click.Context, __: click.Parameter, text: str | None) -> tuple[str, ...]:
-    return tuple(name.strip() for name in text.split(",")) if text else ()
+    return () if text is None else tuple(name.strip() for name in text.split(","))
 
 
 @common.command(
     "sweep --seeds 100 --modality RESIDUAL \\\n    "
     "--set estimator.motor.D_theta=0.9e-3:1.1e-3:5 --out friction"
 )
-@click.argument("plan", required=False, type=common.FILE)
-@click.option("--scenario", callback=_listed, help="One or more, a,b.  [default: table1]")
-@click.option("--seeds", type=common.COUNT, help="Number of runs of each setting.  [default: 1]")
+@common.option("--scenario", callback=_listed, default="table1", help="One or more, a,b.")
+@common.option("--seeds", default=1, type=common.COUNT, help="Number of runs of each setting.")
 @click.option("--modality", callback=_listed, help="Estimators to run, a,b.  [default: all]")
 @click.option(
     "--set",
@@ -179,9 +178,8 @@ def _listed(_: click.Context, __: click.Parameter, text: str | None) -> tuple[st
 @common.out_option("Folder for table and figures.", "sweep")
 @common.answer_options
 def sweep(
-    plan: Path | None,
     scenario: tuple[str, ...],
-    seeds: int | None,
+    seeds: int,
     modality: tuple[str, ...],
     settings: tuple[str, ...],
     scheduler: str | None,
@@ -189,22 +187,21 @@ def sweep(
 ) -> None:
     """Run scenarios over seeds and parameters, in parallel; Monte Carlo.
 
-    PLAN is a TOML file with the keys scenario, seeds, modality and a table [parameters]; options
-    replace these keys. After an interruption, the same command does the missing runs; with more
-    seeds, only the runs of the new seeds.
+    After an interruption, the same command does the missing runs; with more seeds, only the runs
+    of the new seeds.
     """
     from sigmahat.sweep.job import sweep as run
     from sigmahat.sweep.plan import read_plan
     from sigmahat.sweep.summary import as_dicts, conditions, summary
 
     with common.errors_in_one_line(out):
-        read = read_plan(plan, scenario, seeds, modality, settings)
-        for name in read.scenarios:
+        plan = read_plan(scenario, seeds, modality, settings)
+        for name in plan.scenarios:
             common.ready_scenario(name)
-        with common.progress("Running", read.count) as bar:
-            result = run(read, out, scheduler, progress=bar.update)
+        with common.progress("Running", plan.count) as bar:
+            result = run(plan, out, scheduler, progress=bar.update)
     common.answer(
-        f"{conditions(read)}\n\n{summary(result)}\n\n"
+        f"{conditions(plan)}\n\n{summary(result)}\n\n"
         f"Table (Parquet), summary (CSV) and figures (PNG, SVG) are in {out.resolve()}",
         as_dicts(result),
     )

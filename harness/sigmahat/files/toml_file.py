@@ -1,4 +1,4 @@
-"""TOML files: the configuration of a log, the plan of a sweep."""
+"""TOML files, such as the configuration of a log."""
 
 import errno
 import sys

@@ -1,6 +1,6 @@
 """The plan of a sweep, with its runs in their order, and the outcome of a run.
 
-docs/sweeps.md has a plan as a TOML file, and the forms of the values of a parameter.
+docs/sweeps.md has the forms of the values of a parameter.
 """
 
 import itertools
@@ -10,15 +10,11 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from pathlib import Path
-from typing import Any
 from zlib import crc32
 
 import numpy as np
 
-from sigmahat.files import toml_file
 from sigmahat.fmi.instance import Value
-from sigmahat.fmi.unknown_name import unknown
 from sigmahat.runs.metrics import Indices
 
 _CALL = re.compile(r"\s*(\w+)\s*\(([^()]*)\)\s*")
@@ -43,16 +39,8 @@ class Drawn:
 Values = tuple[Value, ...] | Drawn
 
 
-def values(text: Any) -> Values:
-    """Reads the values of a parameter: a text, or a value or list of values of a plan.
-
-    Raises ValueError, which says what is expected.
-    """
-    if not isinstance(text, str):
-        given = text if isinstance(text, Sequence) else [text]
-        if not given or not all(isinstance(v, (float, int, str)) for v in given):
-            raise ValueError(f"expected {_FORMS}, got {given!r}")
-        return _distinct([_literal(v) if isinstance(v, str) else v for v in given])
+def values(text: str) -> Values:
+    """Reads the values of a parameter. Raises ValueError, which says what is expected."""
     call = _CALL.fullmatch(text)
     if call is not None:
         return _drawn(text, call[1], call[2].split(","))
@@ -60,7 +48,7 @@ def values(text: Any) -> Values:
         return _range(text)
     if any(not part.strip() for part in text.split(",")) or "(" in text:
         raise ValueError(f"expected {_FORMS}, got {text!r}")
-    return values(text.split(","))
+    return _distinct([_literal(part) for part in text.split(",")])
 
 
 def _distinct(items: Sequence[Value]) -> tuple[Value, ...]:
@@ -177,46 +165,34 @@ class Plan:
                     yield replace(first, parameters={**first.parameters, name: value})
 
 
-_KEYS = ("scenario", "seeds", "modality", "parameters")
 _MOST = 1_000_000
 _UNREADABLE = 10**15  # as a number of runs
 
 
 def read_plan(
-    path: Path | None,
-    scenarios: Sequence[str] = (),
-    seeds: int | None = None,
+    scenarios: Sequence[str],
+    seeds: int = 1,
     modalities: Sequence[str] = (),
     settings: Sequence[str] = (),
 ) -> Plan:
-    """Reads a plan from a file, from the command line, or from both.
+    """Reads a plan from the command line.
 
-    path        TOML file; None: no file
-    scenarios, seeds, modalities   replace values of the file
-    settings    parameters, each "NAME=VALUES", which replace parameters of the file, or are added
+    modalities  as in Run
+    settings    parameters, each "NAME=VALUES"; of those with one name, the last
 
     Raises ValueError, which names the place, for text that does not fit. Whether the names and
     values fit the scenarios is checked by sigmahat.sweep.check.
     """
-    content = {} if path is None else _content(path)
-    try:
-        parameters = {
-            name: _values(name, given)
-            for name, given in toml_file.dotted(content.get("parameters", {}))
-        }
-        plan = Plan(
-            tuple(scenarios) or _names(content, "scenario") or ("table1",),
-            _seeds(content) if seeds is None else seeds,
-            tuple(modalities) or _names(content, "modality"),
-            parameters,
-        )
-    except ValueError as error:
-        raise ValueError(f"{path}: {error}") from error
+    parameters = {}
     for setting in settings:
-        name, equals, text = setting.partition("=")
+        name, equals, text = map(str.strip, setting.partition("="))
         if not equals:
             raise ValueError(f"--set {setting}: expected NAME=VALUES")
-        parameters[name.strip()] = _values(name.strip(), text)
+        try:
+            parameters[name] = values(text)
+        except ValueError as error:
+            raise ValueError(f"{name}: {error}") from error
+    plan = Plan(tuple(scenarios), seeds, tuple(modalities), parameters)
     if plan.count > _MOST:
         runs = plan.count if plan.count < _UNREADABLE else f"over {_UNREADABLE}"
         raise ValueError(f"{runs} runs; expected at most {_MOST}")
@@ -224,40 +200,3 @@ def read_plan(
         if len(set(names)) < len(names):
             raise ValueError(f"{', '.join(names)}: expected each name once")
     return plan
-
-
-def _content(path: Path) -> dict[str, Any]:
-    try:
-        content: dict[str, Any] = toml_file.read(path).unwrap()
-    except ValueError as error:
-        raise ValueError(f"{path}: not readable as TOML: {error}") from error
-    except OSError as error:
-        raise ValueError(f"cannot read {path}: {error.strerror}") from error
-    for key in content:
-        if key not in _KEYS:
-            raise ValueError(f"{path}: {unknown('key', key, _KEYS)}")
-    if not isinstance(content.get("parameters", {}), dict):
-        raise ValueError(f"{path}: parameters: expected a table [parameters]")
-    return content
-
-
-def _values(name: str, given: Any) -> Values:
-    try:
-        return values(given)
-    except ValueError as error:
-        raise ValueError(f"{name}: {error}") from error
-
-
-def _names(content: Mapping[str, Any], key: str) -> tuple[str, ...]:
-    given = content.get(key, [])
-    names = [given] if isinstance(given, str) else given
-    if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
-        raise ValueError(f"{key}: expected a list of names, got {given!r}")
-    return tuple(names)
-
-
-def _seeds(content: Mapping[str, Any]) -> int:
-    seeds = content.get("seeds", 1)
-    if not isinstance(seeds, int) or isinstance(seeds, bool) or seeds < 1:
-        raise ValueError(f"seeds: expected a number of runs, 1 or more, got {seeds!r}")
-    return seeds
