@@ -180,7 +180,7 @@ def read_plan(
     settings    parameters, each "NAME=VALUES"; of those with one name, the last
 
     Raises ValueError, which names the place, for text that does not fit. Whether the names and
-    values fit the scenarios is checked by sigmahat.sweep.check.
+    values fit the scenarios is checked by sigmahat.sweep.preparation.check.
     """
     parameters = {}
     for setting in settings:
