@@ -98,7 +98,7 @@ def test_killed_and_resumed_is_the_same_file(shell: Shell) -> None:
 def test_a_run_is_not_repeated_in_any_plan(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     done: list[tuple[int, float]] = []
 
-    def execute(run: Run) -> Outcome:
+    def execute(run: Run, _: str) -> Outcome:
         mass = float(run.parameters["plant.link.M"])
         done.append((run.seed, mass))
         return Outcome({"a": Indices(*[10 * mass + run.seed] * len(INDICES))}, None)
@@ -108,7 +108,7 @@ def test_a_run_is_not_repeated_in_any_plan(tmp_path: Path, monkeypatch: pytest.M
         plan = Plan(("table1",), seeds, (), {"plant.link.M": masses})
         done.clear()
         with closing(Records(tmp_path / NAME)) as opened:
-            return all_outcomes(plan, opened, lambda _: None)
+            return all_outcomes(plan, opened, None, lambda _: None)
 
     monkeypatch.setattr(job, "execute", execute)
     monkeypatch.setattr(job, "spread", lambda jobs: (each for each in enumerate(j() for j in jobs)))
