@@ -2,8 +2,6 @@
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
-from itertools import accumulate
 from pathlib import Path
 from typing import Any
 
@@ -30,9 +28,7 @@ _MEANINGS = {
 _IN_RAD = {unit: 2 * math.pi / turn for unit, turn in TURN.items()}
 _IN_NM = {"N.m": 1.0, "mN.m": 1e-3, "kN.m": 1e3, "N.cm": 1e-2}
 _RANGE = (1.0, 100.0)  # of the set-point
-_ALIKE = 1.2
-"""Largest ratio of similar gear ratios as seen in a log: a soft joint may exceed its motor."""
-_MOST_LISTED, _LONGEST_LIST = 200, 40_000  # columns, and bytes of their lines together
+_MOST_LISTED = 200  # columns: with more lines, the file would be too long to be read again
 
 
 def write(log: Log, columns: Columns, joints: Mapping[str, JointGuess]) -> str:
@@ -46,7 +42,7 @@ def write(log: Log, columns: Columns, joints: Mapping[str, JointGuess]) -> str:
     }
     texts = {
         name: _TEMPLATES.get_template("configuration.jinja").render(**head, guess=guess)
-        for name, guess in _with_one_gear(joints).items()
+        for name, guess in joints.items()
     }
     if several:
         return tomlkit.dumps(together({name: tomlkit.parse(text) for name, text in texts.items()}))
@@ -76,11 +72,9 @@ def _listed(log: Log, columns: Columns, joints: Mapping[str, JointGuess]) -> Ite
         low, high = columns.facts[name].low, columns.facts[name].high
         span = "" if math.isnan(low) else f", {low:.6g} to {high:.6g}"
         lines.append(f"  {name}: {samples} samples{span}; {what[name]}")
-    ends = accumulate(len(line.encode()) for line in lines)
-    shown = min(_MOST_LISTED, sum(end < _LONGEST_LIST for end in ends))
-    yield from lines[:shown]
-    if shown < len(lines):
-        yield f"  and {len(lines) - shown} more, left out here"
+    yield from lines[:_MOST_LISTED]
+    if len(lines) > _MOST_LISTED:
+        yield f"  and {len(lines) - _MOST_LISTED} more, left out here"
 
 
 def _unused(column: Column) -> str:
@@ -100,17 +94,6 @@ def _unused(column: Column) -> str:
     ]
     said = " ".join(word for word in words if word)
     return f"{said}, not used" if said else "not placed"
-
-
-def _with_one_gear(joints: Mapping[str, JointGuess]) -> Mapping[str, JointGuess]:
-    """The joints with one comment for all gear ratios, if all are unknown and look alike."""
-    motors = {name: each.ports["theta"] for name, each in joints.items() if "theta" in each.ports}
-    moves = [each.moves or 0.0 for each in motors.values() if each.gear_ratio is None]
-    if len(moves) < len(joints) or min(moves) <= 0 or max(moves) > _ALIKE * min(moves):
-        return joints
-    note = next(iter(motors.values())).notes["gear_ratio"]
-    noted = {name: motor.noted("gear_ratio", note) for name, motor in motors.items()}
-    return {n: replace(j, ports={**j.ports, "theta": noted[n]}) for n, j in joints.items()}
 
 
 def _key(name: str, value: str | float, comment: str | None = None) -> str:
