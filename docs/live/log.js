@@ -38,7 +38,7 @@ const log = {
     this.forget();
     try {
       await opened;
-      checkSize(file);
+      if (file.size > MOST_BYTES) throw new Error(`expected at most ${MOST_BYTES / 1e6} MB`);
       this.table = new Table(await file.text());
     } catch (error) {
       say("log-message", `${file.name}: ${error.message}`);
@@ -94,8 +94,7 @@ const log = {
       else if (!optional) throw new Error(`${port}: choose its column`);
     }
     const { time, ...signals } = ports;
-    checkMotion(signals);
-    return { signals, T: samplePeriod(time, this.table.first) };
+    return { signals, T: samplePeriod(time) };
   },
 
   /** A field for each parameter. What the user has typed stays. */
@@ -164,7 +163,7 @@ const log = {
       await run.run((done) => { bar.value = done; }, () => this.run !== run);
       if (this.run === run) answer.show(run);
     } catch (error) {
-      if (this.run === run) say("log-message", withAdvice(error.message, this.typed()));
+      if (this.run === run) say("log-message", error.message);
     }
     if (this.run === run) bar.hidden = true; // another one may run by now
   },
