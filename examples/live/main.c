@@ -2,7 +2,7 @@
  *
  *     live [SECONDS [PORT]]      60 s and port 9871 of this computer, if nothing is said
  *
- * At the end it prints how late the loop woke up, and how long the tick took.
+ * At the end it prints how late the loop woke up at most, and how long the longest tick took.
  */
 #define _GNU_SOURCE
 
@@ -31,12 +31,6 @@ static sh_parameters parameters;
 static sh_estimator estimator; /* static: it is too large for many stacks */
 static sh_estimate estimate;
 
-/* Times in classes of a microsecond; the last class has all that are longer. */
-typedef struct {
-    uint32_t count[20001], total;
-} histogram;
-static histogram late, ticks;
-
 static int64_t now_ns(void)
 {
     struct timespec t;
@@ -44,28 +38,9 @@ static int64_t now_ns(void)
     return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
 }
 
-static void add(histogram *h, int64_t ns)
+static int64_t larger(int64_t a, int64_t b)
 {
-    const int64_t us = ns < 0 ? 0 : ns / 1000;
-    h->count[us > 20000 ? 20000 : us]++;
-    h->total++;
-}
-
-/* The time that a share of all does not exceed [us]. */
-static int quantile(const histogram *h, double share)
-{
-    double sum = 0.0;
-    int us = -1;
-    do {
-        sum += h->count[++us];
-    } while (us < 20000 && sum < share * h->total);
-    return us + 1;
-}
-
-static void print(const char *what, const histogram *h)
-{
-    printf("%s: half within %d us, 99.9 %% within %d us, all within %d us\n", what,
-           quantile(h, 0.5), quantile(h, 0.999), quantile(h, 1.0));
+    return a > b ? a : b;
 }
 
 static int start(void)
@@ -154,7 +129,7 @@ int main(int count, char *arguments[])
     };
     timerfd_settime(timer, TFD_TIMER_ABSTIME, &every, NULL);
     const int64_t samples = (int64_t)(seconds * (1e9 / PERIOD_NS));
-    int64_t missed = 0;
+    int64_t missed = 0, latest = 0, longest = 0; /* [ns] */
     for (int64_t k = 0; k < samples; k++) {
         uint64_t periods = 0;
         if (read(timer, &periods, sizeof periods) != sizeof periods) {
@@ -167,7 +142,7 @@ int main(int count, char *arguments[])
             missed++;
         }
         const int64_t woken = now_ns();
-        add(&late, woken - first - k * PERIOD_NS);
+        latest = larger(latest, woken - first - k * PERIOD_NS);
 
         const double t = 1e-9 * PERIOD_NS * (double)k;
         const robot_sample sample = robot_read(t);
@@ -175,11 +150,11 @@ int main(int count, char *arguments[])
             .theta = (sh_real)sample.theta, .q = (sh_real)sample.q, .tau = (sh_real)sample.tau};
         const int64_t before = now_ns();
         (void)sh_estimator_tick(&estimator, &parameters, &z, &estimate);
-        add(&ticks, now_ns() - before);
+        longest = larger(longest, now_ns() - before);
         send_estimate(out, t);
     }
-    print("late", &late);
-    print("tick", &ticks);
+    printf("late by %" PRId64 " us at most; longest tick %" PRId64 " us\n", latest / 1000,
+           longest / 1000);
     printf("%" PRId64 " of %" PRId64 " samples missed; stiffness %.5g +- %.2g N.m/rad, %s\n",
            missed, samples, (double)estimate.sigma, 1.96 * (double)estimate.sigma_std,
            estimate.confident ? "confident" : "not confident");
