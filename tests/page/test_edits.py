@@ -83,10 +83,10 @@ def test_a_unit_brings_the_keys_that_it_needs(tmp_path: Path) -> None:
 def test_another_column_is_guessed_anew(tmp_path: Path) -> None:
     """The mark of what is not known goes with the column that it was about."""
     setup = setup_of({**knee_log(), "motor_deg": 3.6e4 * knee_log()["t"] % 360}, tmp_path)
-    setup.set_column("theta", "motor_deg")
+    setup.set("ports.theta.column", "motor_deg")
     assert (setup.get("ports.theta.unit"), setup.get("ports.theta.wrap")) == ("deg", 360)
     assert setup.get("ports.theta.counts_per_turn") is None
-    setup.set_column("theta", None)
+    setup.set("ports.theta.column", None)
     assert value_of(setup.document, "ports.theta.column") is None
     assert "theta" not in setup.get("ports.q.column")
 

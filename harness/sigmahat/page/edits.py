@@ -3,7 +3,7 @@
 Comments of the user stay.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -36,35 +36,44 @@ BY_SCALE = "factor"  # choice in place of a unit: the port has a scale
 
 
 @dataclass(frozen=True)
-class NumberField:
+class Field:
+    """An input of the page: a number, or a choice if there are items."""
+
     key: str
     title: str
-    default: str = ""  # text for the value that holds without the key
+    default: str = ""  # item, or text for the number, that holds without the key
+    items: Sequence[tuple[str, str]] = ()  # values to choose from, and their texts
+    kind: type[str] | type[float] = float  # of the value
     units: Sequence[str] = ()  # units of the column with which the field is shown; empty: all units
     ports: Sequence[str] = ()  # ports at which the field is shown; empty: all ports
 
 
+def items(values: Iterable[str]) -> list[tuple[str, str]]:
+    """Values to choose from that stand for themselves."""
+    return [(each, each) for each in values]
+
+
+SIGN = Field("sign", "sign", "1", (("1", "+1"), ("-1", "-1: turned round")))
 OF_PORT = (
-    NumberField("counts_per_turn", "counts per turn", units=("counts",)),
-    NumberField("gear_ratio", "gear ratio", "1", ports=("theta", "tau")),
-    NumberField("torque_constant", "torque constant [N.m/A]", units=("A", "mA")),
-    NumberField("scale", "port per unit of the column", units=(BY_SCALE,)),
-    NumberField("mm_per_turn", "mm per turn of the motor", "number of mm", units=("mm",)),
-    NumberField("zero", "zero, in its unit", "0"),
-    NumberField("wrap", "starts again after", "never", ports=("theta", "q", "theta_c")),
-    NumberField("delay", "recorded later by [s]", "0", ports=("tau",)),
+    Field("counts_per_turn", "counts per turn", units=("counts",)),
+    Field("gear_ratio", "gear ratio", "1", ports=("theta", "tau")),
+    Field("torque_constant", "torque constant [N.m/A]", units=("A", "mA")),
+    Field("scale", "port per unit of the column", units=(BY_SCALE,)),
+    Field("mm_per_turn", "mm per turn of the motor", "number of mm", units=("mm",)),
+    Field("zero", "zero, in its unit", "0"),
+    Field("wrap", "starts again after", "never", ports=("theta", "q", "theta_c")),
+    Field("delay", "recorded later by [s]", "0", ports=("tau",)),
 )
 PARAMETERS = (
-    NumberField("samplePeriod", "sample period [s]", "0.001"),
-    NumberField("motor.gamma", "motor.gamma", "of theta"),
-    NumberField("motor.B", "motor.B [kg.m²]"),
-    NumberField("motor.D_theta", "motor.D_theta [N.m.s/rad]"),
+    Field("time.unit", "unit of time", "s", items(("s", "ms", "us", "ns", "min")), str),
+    # The first item is the start value of the FMU.
+    Field("modality", "modality", "Residual", items(("Residual", "Sensor", "Model")), str),
+    Field("method", "method", "Paper2011", items(("Paper2011", "FilteredRegression")), str),
+    Field("samplePeriod", "sample period [s]", "0.001"),
+    Field("motor.gamma", "motor.gamma", "of theta"),
+    Field("motor.B", "motor.B [kg.m²]"),
+    Field("motor.D_theta", "motor.D_theta [N.m.s/rad]"),
 )
-CHOICES: Mapping[str, Sequence[str]] = {
-    "modality": ("Residual", "Sensor", "Model"),
-    "method": ("Paper2011", "FilteredRegression"),
-}
-"""Parameters with a few values; the first value is the start value of the FMU."""
 
 
 Value = str | float | bool

@@ -6,7 +6,7 @@ from typing import Any
 
 from bokeh.models import Button, Div, InlineStyleSheet, Row, Select, TextInput, UIElement
 
-from sigmahat.page.edits import GAMMA, NumberField
+from sigmahat.page.edits import GAMMA, Field
 from sigmahat.page.setup import Setup
 
 STYLE = """
@@ -55,81 +55,47 @@ def in_grid(children: Sequence[UIElement], least: str, name: str | None = None) 
     return Row(*children, name=name, sizing_mode="stretch_width", stylesheets=sheets)
 
 
-class Number:
-    """A text field for a number; other text is refused with a message."""
+class Input:
+    """An input that is bound to a key of the configuration; text that is no number is refused."""
 
-    def __init__(self, setup: Setup, key: str, field: NumberField) -> None:
-        self.field = field
-        self._setup, self._key = setup, key
+    def __init__(self, setup: Setup, key: str, field: Field) -> None:
+        """Values that are not among the items of the field are added when they are shown."""
+        self.field, self.key = field, key
+        self._setup = setup
         self._shown = ""
-        self.widget = TextInput(
+        kind = Select if field.items else TextInput
+        self.widget = kind(
             title=field.title, name=key, sizing_mode="stretch_width", stylesheets=[style()]
         )
-        self.widget.on_change("value", self._typed)
+        if field.items:
+            self.widget.options = [*field.items]
+        self.widget.on_change("value", self._changed)
 
     def show(self) -> None:
-        value = self._setup.get(self._key)
-        is_open = self._key in self._setup.open_keys
-        is_default = value is None or (value == 0 and self._key == GAMMA)
+        value = self._setup.get(self.key)
         text = f"{value:.10g}" if isinstance(value, float) else str(value)
-        self._shown = "" if is_default or is_open else text
+        if self.field.items:
+            self._shown = self.field.default if value is None else text
+            if self._shown not in (each for each, _ in self.widget.options):
+                self.widget.options = [*self.widget.options, (text, text)]
+        else:
+            is_open = self.key in self._setup.open_keys
+            is_default = value is None or (value == 0 and self.key == GAMMA)
+            self._shown = "" if is_default or is_open else text
+            self.widget.placeholder = "fill in" if is_open else self.field.default
+            self.widget.css_classes = [_OPEN] if is_open else []
         self.widget.value = self._shown
-        self.widget.placeholder = "fill in" if is_open else self.field.default
-        self.widget.css_classes = [_OPEN] if is_open else []
 
-    def _typed(self, _attribute: str, _old: Any, new: str) -> None:
+    def _changed(self, _attribute: str, _old: Any, new: str) -> None:
         text = new.strip()
         if text == self._shown:
             return
         try:
-            value = float(text) if text else None
+            value = self.field.kind(text) if text else None
         except ValueError:
             value = math.nan
-        if value is None or math.isfinite(value):
-            self._setup.set(self._key, value)
-        else:
-            self._setup.message = f"{self._key}: expected a number, got {text!r}"
+        if isinstance(value, float) and not math.isfinite(value):
+            self._setup.message = f"{self.key}: expected a number, got {text!r}"
             self._setup.show()
-
-
-class Choice:
-    def __init__(
-        self,
-        setup: Setup,
-        title: str,
-        key: str,
-        options: Sequence[tuple[str, str]],
-        default: str = "",
-        current: Callable[[], str] | None = None,
-        chosen: Callable[[str], object] | None = None,
-    ) -> None:
-        """An item is the value of a key of the configuration; "" stands for no value.
-
-        options          values and their texts; other values are added when shown
-        default          item that is shown without the key
-        current, chosen  replace the key: current returns the item to show, chosen is called with
-                         a new item
-        """
-        self._options = list(options)
-        self._current = current or (lambda: str(setup.get(key) or default))
-        self._chosen = chosen or (lambda item: setup.set(key, item or None))
-        self.widget = Select(
-            title=title, name=key, options=self._options, sizing_mode="stretch_width",
-            stylesheets=[style()],
-        )  # fmt: skip
-        self.widget.on_change("value", self._picked)
-
-    def offer(self, items: Sequence[str]) -> None:
-        self._options = [(each, each) for each in items]
-        self.widget.options = list(self._options)
-
-    def show(self) -> None:
-        value = self._current()
-        if value not in {each for each, _ in self._options}:
-            self._options.append((value, value))
-            self.widget.options = list(self._options)
-        self.widget.value = value
-
-    def _picked(self, _attribute: str, _old: Any, new: str) -> None:
-        if new != self._current():
-            self._chosen(new)
+        else:
+            self._setup.set(self.key, value)

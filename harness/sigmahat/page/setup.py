@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import tomlkit
 
 from sigmahat.files.output import write_whole
-from sigmahat.logs.configuration import PORTS, joints_of
+from sigmahat.logs.configuration import FILL_IN, PORTS, joints_of
 from sigmahat.logs.joints import of_joint, together
 from sigmahat.logs.log import Log
 from sigmahat.page import edits
@@ -88,26 +88,33 @@ class Setup:
         self.set_joint(next(iter(joints)))
 
     def get(self, key: str) -> Any:
-        """The value of a key; None if the key is missing."""
-        return edits.value_of(self.document, key)
+        """The value of a key; None if the key is missing, or has to be filled in with a column.
+
+        The unit of a port with a scale is BY_SCALE.
+        """
+        value = edits.value_of(self.document, key)
+        if value is None and key.endswith(".unit") and self.get(f"{key[:-4]}scale") is not None:
+            return BY_SCALE
+        return None if value == FILL_IN else value
 
     def set(self, key: str, value: edits.Value | None) -> None:
-        """Sets a key; None removes it."""
+        """Sets a key; None removes it. The column and the unit of a port also set other keys."""
         if value == self.get(key):
-            self.show()  # the typed text may differ from the usual form
             return
-        if key.startswith("ports.") and key.endswith(".unit") and value is not None:
-            self._set_unit(key.split(".")[1], str(value))
-        elif value is None:
-            edits.remove_value(self.document, key)
-        else:
-            edits.set_value(self.document, key, value)
-        self._edited()
+        match key.split("."), value:
+            case ["ports", port, "column"], (str() | None):
+                self._set_column(port, value)
+            case ["ports", port, "unit"], str():
+                self._set_unit(port, value)
+            case _, None:
+                edits.remove_value(self.document, key)
+            case _:
+                edits.set_value(self.document, key, value)
+        self.is_edited, self.message, self.asks_to_overwrite = True, "", False
+        self.changed()
 
-    def set_column(self, port: str, column: str | None) -> None:
+    def _set_column(self, port: str, column: str | None) -> None:
         """Gives a port another column, or none; unit, sign, zero and gear are guessed anew."""
-        if column == self.get(f"ports.{port}.column"):
-            return
         if column is None:
             edits.set_port(self.document, port, None)
         else:
@@ -119,12 +126,11 @@ class Setup:
                 edits.set_port(self.document, port, port_table(port, guessed))
             else:
                 edits.set_value(self.document, f"ports.{port}.column", column)
-        self._edited()
 
     def _set_unit(self, port: str, unit: str) -> None:
         """Sets a unit, adds the keys that it needs, and removes keys of the unit before."""
         where = f"ports.{port}"
-        before = self.get(f"{where}.unit") or BY_SCALE
+        before = self.get(f"{where}.unit")
         for field in OF_PORT:
             key = f"{where}.{field.key}"
             if unit in field.units and self.get(key) is None and field.key != "mm_per_turn":
@@ -141,10 +147,6 @@ class Setup:
         elif before == "counts" and port in ("theta", "q"):
             edits.set_value(self.document, f"encoder.{port}", 0)
 
-    def _edited(self) -> None:
-        self.is_edited, self.message, self.asks_to_overwrite = True, "", False
-        self.changed()
-
     # Results of the jobs
 
     def guessed(self, templates: Mapping[str, str], chosen: Chosen) -> None:
@@ -154,6 +156,8 @@ class Setup:
             self._start({name: tomlkit.parse(text) for name, text in templates.items()})
 
     def set_joint(self, name: str) -> None:
+        if self.document is self.joints[name]:
+            return
         self.joint, self.document = name, self.joints[name]
         # Present results and questions belong to the joint before.
         self.message, self.problem, self.asks_to_overwrite = "", "", False

@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING
 from bokeh.core.templates import get_env
 from bokeh.document import Document
 from bokeh.events import DocumentReady
-from bokeh.models import Column, Row, UIElement
+from bokeh.models import Column, Row, Select, UIElement
 
 from sigmahat.files.templates import environment
 from sigmahat.logs.configuration import FILL_IN, PORTS
 from sigmahat.page import edits
-from sigmahat.page.edits import BY_SCALE, CHOICES, OF_PORT, PARAMETERS, TITLES, UNITS
-from sigmahat.page.inputs import Choice, Number, button, in_grid, words
+from sigmahat.page.edits import BY_SCALE, OF_PORT, PARAMETERS, SIGN, TITLES, UNITS, Field
+from sigmahat.page.inputs import Input, button, in_grid, style, words
 from sigmahat.page.setup import Setup
 from sigmahat.plotting.style import PAGE
 
@@ -31,79 +31,58 @@ _TEMPLATES = environment(Path(__file__).parent)
 class PortPanel:
     def __init__(self, setup: Setup, port: str) -> None:
         self._setup, self._port, self._where = setup, port, f"ports.{port}"
-        names = [(name, name) for name in setup.log.columns]
-        units = [*((unit, unit) for unit in UNITS[port]), (BY_SCALE, "a factor")]
-        column, sign = f"{self._where}.column", f"{self._where}.sign"
-        self._column = Choice(
-            setup, "column", column, [(_NONE, "not used"), *names],
-            current=self._name, chosen=lambda name: setup.set_column(port, name or None),
-        )  # fmt: skip
-        self._unit = Choice(setup, "unit", f"{self._where}.unit", units, current=self._unit_now)
-        self._sign = Choice(
-            setup, "sign", sign, (("1", "+1"), ("-1", "-1: turned round")),
-            current=lambda: f"{setup.get(sign) or 1:g}",
-            chosen=lambda item: setup.set(sign, int(item)),
-        )  # fmt: skip
-        times = [(_NONE, "common times"), *names]
-        self._time = Choice(setup, "times", f"{self._where}.time", times)
-        self._numbers = [Number(setup, f"{self._where}.{f.key}", f) for f in OF_PORT]
+        columns, units = edits.items(setup.log.columns), edits.items(UNITS[port])
+        column, *others = (
+            Input(setup, f"{self._where}.{field.key}", field)
+            for field in (
+                Field("column", "column", items=[(_NONE, "not used"), *columns], kind=str),
+                Field("unit", "unit", UNITS[port][0], [*units, (BY_SCALE, "a factor")], str),
+                SIGN,
+                *OF_PORT,
+                Field("time", "times", items=[(_NONE, "common times"), *columns], kind=str),
+            )
+        )
+        self._column, self._others = column, others
         self._notes = words(color="var(--soft)")
-        numbers = [each.widget for each in self._numbers]
-        grid = in_grid([self._unit.widget, self._sign.widget, *numbers, self._time.widget], "8rem")
+        grid = in_grid([each.widget for each in others], "8rem")
         self._details = Column(grid, self._notes, sizing_mode="stretch_width")
         self.root = Column(
-            self._column.widget, self._details, name=self._where, sizing_mode="stretch_width"
+            column.widget, self._details, name=self._where, sizing_mode="stretch_width"
         )
 
     def show(self) -> None:
         setup = self._setup
         self._column.widget.disabled = not setup.is_ready
         self._column.show()
-        self._details.visible = self._name() != _NONE
+        self._details.visible = setup.get(self._column.key) is not None
         if not self._details.visible:
             return
-        for each in (self._unit, self._sign, self._time):
+        unit = setup.get(f"{self._where}.unit") or UNITS[self._port][0]
+        notes = []  # on uncertain guesses
+        for each in self._others:
             each.show()
-        unit = self._unit_now()
-        for number in self._numbers:
-            field, key = number.field, f"{self._where}.{number.field.key}"
+            field = each.field
             fits = (not field.units or unit in field.units) and (
                 not field.ports or self._port in field.ports
             )
-            number.widget.visible = fits or setup.get(key) is not None
-            number.show()
-        self._time.widget.visible = len(set(setup.log.columns.values())) > 1
-        notes = []  # on uncertain guesses
-        for key in ("unit", "sign", *(field.key for field in OF_PORT)):
-            if said := edits.comment_of(setup.document, f"{self._where}.{key}"):
-                notes.append(escape(f"{key}: {said.removeprefix(f'{FILL_IN}: ')}"))
+            if field.key == "time":
+                fits = len(set(setup.log.columns.values())) > 1
+            each.widget.visible = fits or setup.get(each.key) is not None
+            if said := edits.comment_of(setup.document, each.key):
+                notes.append(escape(f"{field.key}: {said.removeprefix(f'{FILL_IN}: ')}"))
         self._notes.text = "".join(f"<small>{each}</small><br>" for each in notes)
         self._notes.visible = bool(notes)
-
-    def _name(self) -> str:
-        name = self._setup.get(f"{self._where}.column")
-        return _NONE if name in (None, FILL_IN) else str(name)
-
-    def _unit_now(self) -> str:
-        if self._setup.get(f"{self._where}.scale") is not None:
-            return BY_SCALE
-        return str(self._setup.get(f"{self._where}.unit") or UNITS[self._port][0])
 
 
 class ParameterPanel:
     def __init__(self, setup: Setup) -> None:
         self._setup = setup
-        columns = [(_NONE, "none: sample period"), *((name, name) for name in setup.log.columns)]
-        units = [(unit, unit) for unit in ("s", "ms", "us", "ns", "min")]
-        self._inputs: list[Choice | Number] = [
-            Choice(setup, "time", "time.column", columns),
-            Choice(setup, "unit of time", "time.unit", units, "s"),
-        ]
-        for name, items in CHOICES.items():
-            choice = Choice(setup, name, name, [(each, each) for each in items], items[0])
-            choice.widget.styles = {"grid-column": "1 / -1"}  # FilteredRegression needs the width
-            self._inputs.append(choice)
-        self._inputs += [Number(setup, field.key, field) for field in PARAMETERS]
+        columns = [(_NONE, "none: sample period"), *edits.items(setup.log.columns)]
+        fields = (Field("time.column", "time", items=columns, kind=str), *PARAMETERS)
+        self._inputs = [Input(setup, field.key, field) for field in fields]
+        for each in self._inputs:
+            if each.key in ("modality", "method"):  # FilteredRegression needs the width
+                each.widget.styles = {"grid-column": "1 / -1"}
         self.root = in_grid([each.widget for each in self._inputs], "8rem", name="parameters")
 
     def show(self) -> None:
@@ -245,9 +224,10 @@ class Window:
     ) -> None:
         """ready is called when the browser has drawn the page, estimate by the button."""
         self._setup, self._document, self._is_due = setup, document, False
-        self._joint = Choice(
-            setup, "joint", "joint", [], current=lambda: setup.joint, chosen=setup.set_joint
+        self._joint = Select(
+            title="joint", name="joint", sizing_mode="stretch_width", stylesheets=[style()]
         )
+        self._joint.on_change("value", lambda _attribute, _old, name: setup.set_joint(name))
         self._columns = words(name="columns")
         self._headline = words(name="headline", font_weight="700", font_size="1.15rem")
         self._file = words(name="file", overflow_x="auto")
@@ -257,13 +237,14 @@ class Window:
             SavingBar(setup, estimate),
         )
         self._panels = panels
-        texts = (self._columns, self._headline, self._file, self._joint.widget)
+        texts = (self._columns, self._headline, self._file, self._joint)
         for root in (*texts, *(panel.root for panel in panels)):
             document.add_root(root)
         text = Path(__file__).with_name("page.html").read_text(encoding="utf-8")
         document.template = get_env().from_string(text)
-        style = PAGE.read_text(encoding="utf-8")
-        document.template_variables.update(log=setup.log.path.name, ports=TITLES, style=style)
+        document.template_variables.update(
+            log=setup.log.path.name, ports=TITLES, style=PAGE.read_text(encoding="utf-8")
+        )
         document.title = f"sigmahat: {setup.log.path.name}"
         self._show()
         document.on_event(DocumentReady, lambda _: ready())
@@ -283,10 +264,9 @@ class Window:
 
         self._is_due = False
         setup, answer = self._setup, self._setup.answer
-        self._joint.widget.visible = len(setup.joints) > 1
+        self._joint.visible = len(setup.joints) > 1
         if setup.joints:
-            self._joint.offer(list(setup.joints))
-            self._joint.show()
+            self._joint.options, self._joint.value = list(setup.joints), setup.joint
         for panel in self._panels:
             panel.show()
         uses = {setup.get(f"ports.{port}.column"): port for port in PORTS}
