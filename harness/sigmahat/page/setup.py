@@ -7,7 +7,6 @@ the thread of the server may use the state; jobs send their results to this thre
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from time import monotonic
 from typing import TYPE_CHECKING, Any
 
 import tomlkit
@@ -26,8 +25,6 @@ if TYPE_CHECKING:
 
 Chosen = Callable[[Mapping[str, str | None]], "Mapping[str, PortGuess]"]
 """Guesses units, signs and gear of columns by port."""
-
-_DOUBLE_CLICK = 0.5  # [s] the second click of a double click does not confirm
 
 
 @dataclass(frozen=True)
@@ -52,7 +49,6 @@ class Setup:
         self.message = ""  # about the last click on a button, or the last value
         self.changed: Callable[[], object] = lambda: None  # called after changes of the document
         self.asks_to_overwrite = False  # whether a question to overwrite the file is open
-        self._asked = 0.0
         self._then: Callable[[], object] | None = None
         self.windows: set[Callable[[], object]] = set()  # functions to call after every change
         self._chosen: Chosen = lambda names: {}
@@ -185,11 +181,10 @@ class Setup:
         """
         if not overwrite:
             self._then = then
-        elif not (self.asks_to_overwrite and monotonic() > self._asked + _DOUBLE_CLICK):
+        elif not self.asks_to_overwrite:
             return
         self.asks_to_overwrite = self.path.exists() and not (overwrite or self.is_on_disk)
         if self.asks_to_overwrite:
-            self._asked = monotonic()
             self.message = f"{self.path} exists, and differs from what is shown here."
         elif self._is_written():
             log, default = self.log.path, Path(f"{self.log.path.stem}.toml")
