@@ -1,8 +1,8 @@
 "use strict";
 // The estimator over a log, and what it says over the deformation afterwards.
 
-const RUN = ["sigma", "sigma_std", "phi", "setPoint", "doubt"];
-const FROZEN = ["sigma", "sigma_std", "tau_e", "tau_e_std", "doubt"];
+const RUN = ["sigma", "sigma_std", "phi", "setPoint"];
+const FROZEN = ["sigma", "sigma_std", "tau_e", "tau_e_std"];
 const INPUTS = ["theta", "q", "theta_c", "tau", "tau_e_sensor"];
 const WITHIN = 41; // points of a curve
 const OUTER = 0.001; // share of the points at either end: single wrong samples do not set the reach
@@ -17,9 +17,10 @@ class LogEstimate {
     this.ports = ports;
     this.rows = ports.theta.length;
     this.inputs = new Signals(this.fmu, INPUTS);
-    this.outputs = new Outputs(this.fmu, RUN);
-    this.frozen = new Outputs(this.fmu, FROZEN);
-    this.columns = Object.fromEntries(RUN.map((name) => [name, new Float64Array(this.rows)]));
+    this.outputs = new Signals(this.fmu, RUN);
+    this.frozen = new Signals(this.fmu, FROZEN);
+    this.doubt = new Signals(this.fmu, ["doubt"]);
+    this.columns = Object.fromEntries([...RUN, "doubt"].map((name) => [name, new Float64Array(this.rows)]));
     this.k = 0;
   }
 
@@ -38,6 +39,7 @@ class LogEstimate {
     this.inputs.set([theta[k], q[k], theta_c ? theta_c[k] : 0, tau[k], 0]);
     this.fmu.step(k * this.T, this.T);
     this.outputs.get().forEach((value, i) => { this.columns[RUN[i]][k] = value; });
+    [this.columns.doubt[k]] = this.doubt.get();
     this.k += 1;
   }
 
@@ -47,7 +49,7 @@ class LogEstimate {
       const phi = grid(low, high);
       const points = Array.from(phi, (each) => this.#at(each, thetaC));
       const [sigma, std, torque, torqueStd, doubt] =
-        FROZEN.map((_, i) => Float64Array.from(points, (point) => point[i]));
+        [...FROZEN, "doubt"].map((_, i) => Float64Array.from(points, (point) => point[i]));
       return { setPoint, phi, sigma, std, doubt, torque, torqueStd };
     });
   }
@@ -62,7 +64,7 @@ class LogEstimate {
       this.fmu.step(this.k * this.T, this.T);
       this.k += 1;
     }
-    return this.frozen.get().slice();
+    return [...this.frozen.get(), ...this.doubt.get()];
   }
 
   /** Set-points to show, three if it moves, and the deformations that the log has near each. */

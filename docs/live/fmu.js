@@ -74,16 +74,12 @@ class Fmu {
   }
 }
 
-/** In the names of the functions that get and set a variable. */
-function callType({ type }) {
-  return type === "Enumeration" ? "Integer" : type;
-}
-
 /** Several variables of one type, that are set or read in one call. */
 class Signals {
   constructor(fmu, variables) {
     this.fmu = fmu;
-    this.type = callType(fmu.variable(variables[0]));
+    const { type } = fmu.variable(variables[0]);
+    this.type = type === "Enumeration" ? "Integer" : type; // in the names of the functions
     this.count = variables.length;
     this.references = fmu.wasm.malloc(4 * this.count);
     this.place = fmu.wasm.malloc(8 * this.count);
@@ -109,26 +105,5 @@ class Signals {
   set(values) {
     this.values.set(values);
     this.fmu.call(`fmi2Set${this.type}`, this.references, this.count, this.place);
-  }
-}
-
-/** Outputs of any types, that are read together. */
-class Outputs {
-  constructor(fmu, names) {
-    this.values = new Float64Array(names.length);
-    const types = names.map((name) => callType(fmu.variable(name)));
-    this.groups = [...new Set(types)].map((type) => {
-      const places = [...names.keys()].filter((i) => types[i] === type);
-      return { places, signals: new Signals(fmu, places.map((i) => names[i])) };
-    });
-  }
-
-  /** Values in the order of the names, in an array that the next call fills again. */
-  get() {
-    for (const { places, signals } of this.groups) {
-      const found = signals.get();
-      for (let i = 0; i < places.length; i += 1) this.values[places[i]] = found[i];
-    }
-    return this.values;
   }
 }

@@ -5,7 +5,7 @@ const SECONDS = SCENARIO.duration; // shown
 const NORMAL_95 = 1.96; // half the width of an interval of 95 % over the standard deviation
 const SHOWN = {
   plant: ["sigma", "tau_e"],
-  estimator: ["sigma", "tau_e", "sigma_std", "doubt"],
+  estimator: ["sigma", "tau_e", "sigma_std"],
 };
 // Of the noise of the paper: the estimator is told no less, since it has to be told some.
 const LEAST_NOISE = 1 / 20;
@@ -138,7 +138,7 @@ const joint = {
     say("value-true", `${truth.toFixed(1)} N·m/rad`);
     say("value-sigma", `${withBand(estimate, half.at(-1))} N·m/rad`);
     say("value-error", `${shortly((100 * (estimate - truth)) / truth)} %`);
-    say("value-doubt", confidence(this.simulation.recorded.estimator.values.at(-1)));
+    say("value-doubt", confidence(this.simulation.doubt.values[0]));
   },
 };
 

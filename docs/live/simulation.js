@@ -5,7 +5,7 @@
 class Simulation {
   /**
    * plant, estimator: from compiled(); start values of each by name, in { plant, estimator }
-   * record: { plant, estimator }, names of outputs to read at each sample
+   * record: { plant, estimator }, names of Real outputs to read at each sample
    */
   constructor(plant, estimator, start, record) {
     this.start = start;
@@ -17,9 +17,10 @@ class Simulation {
     this.sent = new Signals(this.plant, Object.values(SCENARIO.connections));
     this.received = new Signals(this.estimator, Object.keys(SCENARIO.connections));
     this.recorded = {
-      plant: new Outputs(this.plant, record.plant),
-      estimator: new Outputs(this.estimator, record.estimator),
+      plant: new Signals(this.plant, record.plant),
+      estimator: new Signals(this.estimator, record.estimator),
     };
+    this.doubt = new Signals(this.estimator, ["doubt"]);
   }
 
   /** Time of the next sample [s]. */
@@ -34,6 +35,7 @@ class Simulation {
     this.received.set(this.sent.get());
     this.estimator.step(t, T);
     this.recorded.estimator.get();
+    this.doubt.get();
     this.plant.step(t, T);
     this.k += 1;
   }
