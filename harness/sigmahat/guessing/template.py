@@ -18,13 +18,14 @@ from sigmahat.logs.joints import together
 from sigmahat.logs.log import Log
 from sigmahat.logs.units import seconds
 
-_MEANINGS = {
+MEANINGS = {
     "theta": "principal motor, after its gear",
     "q": "link",
     "theta_c": "motor that sets the stiffness",
     "tau": "torque of the principal motor, on its axis before the gear",
     "tau_e_sensor": "measured flexibility torque, for modality Sensor",
 }
+"""What the ports are."""
 _IN_RAD = {unit: 2 * math.pi / turn for unit, turn in TURN.items()}
 _IN_NM = {"N.m": 1.0, "mN.m": 1e-3, "kN.m": 1e3, "N.cm": 1e-2}
 _RANGE = (1.0, 100.0)  # of the set-point
@@ -105,6 +106,8 @@ def _key(name: str, value: str | float, comment: str | None = None) -> str:
 
 def period_of(guess: JointGuess) -> str:
     """The unit of the sample period, and whether it is plausible."""
+    if guess.time is None:
+        return "[s] FILL IN: time between two rows; the log has no times"
     unit, T = guess.clock.unit, guess.clock.interval
     likely = likely_unit(unit, T)
     if likely is None:
@@ -144,7 +147,7 @@ _TEMPLATES = environment(Path(__file__).parent, autoescape=False).overlay(
     trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True
 )
 _TEMPLATES.globals |= {
-    "MEANINGS": _MEANINGS,
+    "MEANINGS": MEANINGS,
     "UNITS": configuration.PORTS,
     "IN_RAD": _IN_RAD,
     "IN_NM": _IN_NM,

@@ -11,27 +11,20 @@ import tomlkit
 from tomlkit.items import Table
 
 from sigmahat.files import toml_file
+from sigmahat.guessing.columns import TURN
 from sigmahat.logs import joints
 from sigmahat.logs.configuration import FILL_IN, NOT_YOURS, WIDE_PRIOR
 
-ANGLES = ("rad", "mrad", "deg", "turn", "counts")
-TORQUES = ("N.m", "mN.m", "kN.m", "A", "mA")
+_ANGLES, _TORQUES = (*TURN, "counts"), ("N.m", "mN.m", "kN.m")
 UNITS: Mapping[str, Sequence[str]] = {
-    "theta": ANGLES,
-    "q": ANGLES,
-    "theta_c": (*ANGLES, "mm"),
-    "tau": TORQUES,
-    "tau_e_sensor": TORQUES[:3],
+    "theta": _ANGLES,
+    "q": _ANGLES,
+    "tau": (*_TORQUES, "A", "mA"),
+    "theta_c": (*_ANGLES, "mm"),
+    "tau_e_sensor": _TORQUES,
 }
-"""Units to choose from, by port; a file may name any other unit."""
-TITLES: Mapping[str, str] = {
-    "theta": "theta: motor",
-    "q": "q: link",
-    "tau": "tau: torque of the motor",
-    "theta_c": "theta_c: set-point",
-    "tau_e_sensor": "tau_e_sensor: torque sensor",
-}
-"""Titles of the ports; ports that most joints have are first."""
+"""Units to choose from, by port; a file may name any other unit. Ports that most joints have are
+first."""
 BY_SCALE = "factor"  # choice in place of a unit: the port has a scale
 
 

@@ -14,9 +14,10 @@ from bokeh.events import DocumentReady
 from bokeh.models import Column, Row, Select, UIElement
 
 from sigmahat.files.templates import environment
+from sigmahat.guessing.template import MEANINGS
 from sigmahat.logs.configuration import FILL_IN, PORTS
 from sigmahat.page import edits
-from sigmahat.page.edits import BY_SCALE, OF_PORT, PARAMETERS, SIGN, TITLES, UNITS, Field
+from sigmahat.page.edits import BY_SCALE, OF_PORT, PARAMETERS, SIGN, UNITS, Field
 from sigmahat.page.inputs import Input, button, in_grid, style, words
 from sigmahat.page.setup import Setup
 from sigmahat.plotting.style import PAGE
@@ -232,7 +233,7 @@ class Window:
         self._headline = words(name="headline", font_weight="700", font_size="1.15rem")
         self._file = words(name="file", overflow_x="auto")
         panels: Sequence[ParameterPanel | PortPanel | FindingsPanel | ResultPanel | SavingBar] = (
-            *(PortPanel(setup, port) for port in TITLES),
+            *(PortPanel(setup, port) for port in UNITS),
             *(kind(setup) for kind in (ParameterPanel, FindingsPanel, ResultPanel)),
             SavingBar(setup, estimate),
         )
@@ -243,7 +244,9 @@ class Window:
         text = Path(__file__).with_name("page.html").read_text(encoding="utf-8")
         document.template = get_env().from_string(text)
         document.template_variables.update(
-            log=setup.log.path.name, ports=TITLES, style=PAGE.read_text(encoding="utf-8")
+            log=setup.log.path.name,
+            ports={port: MEANINGS[port] for port in UNITS},
+            style=PAGE.read_text(encoding="utf-8"),
         )
         document.title = f"sigmahat: {setup.log.path.name}"
         self._show()
