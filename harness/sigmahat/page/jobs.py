@@ -1,7 +1,7 @@
 """Slow jobs in a thread: previews, guess, checks, curve. The page stays responsive meanwhile."""
 
 import logging
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
 from queue import SimpleQueue
@@ -9,14 +9,13 @@ from threading import Thread
 
 import numpy as np
 import tomlkit
-from numpy.typing import NDArray
 
 from sigmahat.fmi.instance import FmuError, Slave, installed
 from sigmahat.guessing import template
 from sigmahat.guessing.columns import read_columns
 from sigmahat.guessing.guess import guess, guess_chosen
 from sigmahat.logs.job import Replay
-from sigmahat.logs.log import Array, Log, LogError
+from sigmahat.logs.log import Log, LogError
 from sigmahat.page.setup import Chosen, Look, Setup
 
 _BUCKETS = 80
@@ -24,29 +23,21 @@ _WIDTH, _HEIGHT = 160, 28  # of the line of a preview
 
 
 def look(log: Log, name: str) -> Look:
+    """The range of a column, and a line through the least and the greatest value of each bucket."""
     try:
         values = log.read(name)
     except LogError:
-        return Look("text", ())
-    finite = np.flatnonzero(np.isfinite(values))
-    if not len(finite):
-        return Look("no number", ())
-    low, high = float(values[finite].min()), float(values[finite].max())
-    return Look(f"{low:.5g} to {high:.5g}", _line(values, finite, low, high))
-
-
-def _line(
-    values: Array, finite: NDArray[np.intp], low: float, high: float
-) -> Sequence[tuple[float, float]]:
-    """The least and the greatest value of each bucket, in the order of the rows."""
-    points = []
-    for part in np.array_split(finite, min(_BUCKETS, len(finite))):
-        own = values[part]
-        for i in sorted({int(own.argmin()), int(own.argmax())}):
-            x = _WIDTH * part[i] / max(len(values) - 1, 1)
-            y = (_HEIGHT - 2) * (high - own[i]) / ((high - low) or 1.0) + 1
-            points.append((round(float(x), 1), round(float(y), 1)))
-    return points
+        return Look("text", "")
+    values = values[np.isfinite(values)]
+    if not len(values):
+        return Look("no number", "")
+    low, high = float(values.min()), float(values.max())
+    buckets = np.array_split(values, min(_BUCKETS, len(values)))
+    ends = np.array([end for part in buckets for end in (part.min(), part.max())])
+    x = np.linspace(0, _WIDTH, len(ends))
+    y = (_HEIGHT - 2) * (high - ends) / ((high - low) or 1.0) + 1
+    points = " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(x, y, strict=True))
+    return Look(f"{low:.5g} to {high:.5g}", points)
 
 
 def guessed(log: Log) -> tuple[Mapping[str, str], Chosen]:

@@ -4,7 +4,7 @@ All windows share one state, so that they show the same, and a closed window los
 the thread of the server may use the state; jobs send their results to this thread.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -30,7 +30,7 @@ Chosen = Callable[[Mapping[str, str | None]], "Mapping[str, PortGuess]"]
 @dataclass(frozen=True)
 class Look:
     span: str  # least and greatest value, or why the column has no values
-    line: Sequence[tuple[float, float]]  # points in a box of 160 x 28, from its upper left corner
+    line: str  # points of SVG in a box of 160 x 28, from its upper left corner
 
 
 class Setup:
