@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -25,7 +24,7 @@ _SINGLE_TURN = (2.0**10, 2.0**15)  # wraps of absolute encoders; 16 and 32 bits 
 _SURE = 0.8  # from this correlation with the deformation, the sign of a torque sensor is sure
 
 
-@dataclass(frozen=True)
+@dataclass
 class PortGuess:
     """The column of a port, as the keys of a configuration describe it."""
 
@@ -37,7 +36,7 @@ class PortGuess:
     wrap: float | None
     """Period of a counter that starts again, in the unit of the column; None without a period."""
     time: str | None  # the time column of the port, if it differs from the time column of the joint
-    notes: Mapping[str, str]  # what to know or to check, by key
+    notes: dict[str, str]  # what to know or to check, by key
     sign: int = 1  # 1 or -1
     zero: float = 0.0  # zero of the port, in the unit of the column
     gear_ratio: float | None = 1.0  # None if the user has to fill in the gear ratio
@@ -51,23 +50,19 @@ class PortGuess:
     steps: int = 0
     """Steps of the values per turn, if the unit is not counts; 0 if the values have no steps."""
 
-    def noted(self, key: str, note: str, **changes: Any) -> PortGuess:
-        """The guess with a note to a key, and other changes."""
-        return replace(self, notes={**self.notes, key: note}, **changes)
-
 
 def guess_ports(roles: Roles, columns: Columns, main: str | None) -> dict[str, PortGuess]:
     """The guess for every port that has a column; main is the time column of the joint."""
     ports = {port: _plain(port, role, main) for port, role in roles.ports.items()}
     angles = {port: roles.ports[port].column for port in ("theta", "q") if port in ports}
     for port, column in angles.items():
-        ports[port] = _with_unit(ports[port], column, _angle(column, columns, port == "q"), port)
+        _set_unit(ports[port], column, columns, port == "q")
     if len(angles) == 2:
-        ports |= _together(ports, *angles.values())
+        _set_together(ports["theta"], ports["q"], *angles.values())
     if "tau" in ports:
-        ports["tau"] = _torque(ports["tau"], roles)
+        _set_torque(ports["tau"], roles)
     if "tau_e_sensor" in ports:
-        ports["tau_e_sensor"] = _sensor(ports, roles)
+        _set_sensor(ports, roles)
     return ports
 
 
@@ -124,56 +119,52 @@ def _unit_by_velocity(column: Column, signals: Sequence[Column], T: float) -> st
     return None
 
 
-def _with_unit(port: PortGuess, column: Column, found: tuple[str, str], name: str) -> PortGuess:
-    (unit, how), wrap = found, column.facts.wrap
-    port = replace(port, unit=unit, steps=counts_per_turn(column.facts, unit))
+def _set_unit(port: PortGuess, column: Column, columns: Columns, is_link: bool) -> None:
+    port.unit, how = _angle(column, columns, is_link)
+    port.steps = counts_per_turn(column.facts, port.unit)
     if how:
-        port = port.noted("unit", how)
-    least, most = _SINGLE_TURN
-    if unit == "counts" and name == "q" and wrap is not None and least <= wrap <= most:
-        note = "CHECK: the counter starts again after this number"
-        port = port.noted("counts_per_turn", note, counts_per_turn=wrap)
-    return port
+        port.notes["unit"] = how
+    wrap, (least, most) = column.facts.wrap, _SINGLE_TURN
+    if port.unit == "counts" and is_link and wrap is not None and least <= wrap <= most:
+        port.counts_per_turn = wrap
+        port.notes["counts_per_turn"] = "CHECK: the counter starts again after this number"
 
 
-def _together(ports: Mapping[str, PortGuess], motor: Column, link: Column) -> dict[str, PortGuess]:
+def _set_together(theta: PortGuess, q: PortGuess, motor: Column, link: Column) -> None:
     """Gear, sign and zeros of both positions, from the motion of the link with the motor."""
-    theta, q = ports["theta"], ports["q"]
     fitted = line(motor.window, link.window)
     if fitted.slope == 0:
-        return {}
+        return
     if _is_vague(theta):
-        theta = _unit_by_other(theta, q, 1 / abs(fitted.slope))
+        _set_unit_by_other(theta, q, 1 / abs(fitted.slope))
     elif _is_vague(q):
-        q = _unit_by_other(q, theta, abs(fitted.slope))
-    theta = _gear(theta, q, 1 / abs(fitted.slope), fitted.rest)
+        _set_unit_by_other(q, theta, abs(fitted.slope))
+    _set_gear(theta, q, 1 / abs(fitted.slope), fitted.rest)
     ratio = _ratio(theta, q)
     if fitted.slope < 0:
-        q = q.noted("sign", "it moves against the motor", sign=-1)
+        q.sign, q.notes["sign"] = -1, "it moves against the motor"
     slope = math.copysign(ratio or abs(fitted.slope), fitted.slope)
     deformation = link.window - slope * motor.window
     spread = max(fitted.rest * float(np.std(link.window)), float(np.std(deformation)))
     if abs(float(np.mean(deformation))) > _APART * spread:
-        note = "CHECK: mean of the column, as the zeros of both do not agree"
-        theta = theta.noted("zero", note, zero=_mean(motor))
-        q = q.noted("zero", note, zero=_mean(link))
-    return {"theta": theta, "q": q}
+        for port, column in ((theta, motor), (q, link)):
+            port.zero = _mean(column)
+            port.notes["zero"] = "CHECK: mean of the column, as the zeros of both do not agree"
 
 
 def _is_vague(port: PortGuess) -> bool:
     return port.notes.get("unit", "").startswith("CHECK")
 
 
-def _unit_by_other(port: PortGuess, other: PortGuess, slope: float) -> PortGuess:
+def _set_unit_by_other(port: PortGuess, other: PortGuess, slope: float) -> None:
     """The unit of a vague position, whose values are slope times those of the other position."""
-    if other.unit not in TURN:
-        return port
-    same = [unit for unit in TURN if abs(slope * TURN[other.unit] / TURN[unit] - 1) < _AS_FAR]
-    unit = same[0] if same else other.unit
-    return port.noted("unit", "CHECK: from the other position, which turns as far", unit=unit)
+    if other.unit in TURN:
+        same = [unit for unit in TURN if abs(slope * TURN[other.unit] / TURN[unit] - 1) < _AS_FAR]
+        port.unit = same[0] if same else other.unit
+        port.notes["unit"] = "CHECK: from the other position, which turns as far"
 
 
-def _gear(theta: PortGuess, q: PortGuess, slope: float, rest: float) -> PortGuess:
+def _set_gear(theta: PortGuess, q: PortGuess, slope: float, rest: float) -> None:
     """The gear ratio if both units are known and the joint is stiff; else a note with a hint.
 
     slope  ratio of the values of theta to the values of q
@@ -183,22 +174,22 @@ def _gear(theta: PortGuess, q: PortGuess, slope: float, rest: float) -> PortGues
         gear = slope * TURN[q.unit] / TURN[theta.unit]
         if 1 / _AFTER_GEAR < gear < _AFTER_GEAR:
             note = "it moves as far as the link, so it is measured after the gear"
-            return theta.noted("gear_ratio", note, gear_ratio=1.0)
-        whole = max(round(gear), 1)
-        sure = rest < _STIFF and abs(gear / whole - 1) < _WHOLE
-        note = f"the motor moves {gear:.4g} times as far as the link"
-        note = f"{'CHECK' if sure else 'FILL IN'}: {note}"
-        ratio = float(whole) if sure else None
-        return theta.noted("gear_ratio", note, gear_ratio=ratio, moves=gear)
-    product = None
-    note = "FILL IN: 1 if theta is measured after the gear"
-    if q.unit in TURN:
-        product = slope * TURN[q.unit]
-    elif theta.unit == "counts" and q.unit == "counts" and q.counts_per_turn:
-        product = slope * q.counts_per_turn
-    if product is not None:
-        note = f"FILL IN: gear_ratio times counts_per_turn is about {product:.4g}"
-    return theta.noted("gear_ratio", note, gear_ratio=None, moves=product)
+        else:
+            whole = max(round(gear), 1)
+            sure = rest < _STIFF and abs(gear / whole - 1) < _WHOLE
+            theta.gear_ratio, theta.moves = float(whole) if sure else None, gear
+            first = "CHECK" if sure else "FILL IN"
+            note = f"{first}: the motor moves {gear:.4g} times as far as the link"
+    else:
+        theta.gear_ratio = None
+        note = "FILL IN: 1 if theta is measured after the gear"
+        if q.unit in TURN:
+            theta.moves = slope * TURN[q.unit]
+        elif theta.unit == "counts" and q.unit == "counts" and q.counts_per_turn:
+            theta.moves = slope * q.counts_per_turn
+        if theta.moves is not None:
+            note = f"FILL IN: gear_ratio times counts_per_turn is about {theta.moves:.4g}"
+    theta.notes["gear_ratio"] = note
 
 
 def _ratio(theta: PortGuess, q: PortGuess) -> float | None:
@@ -213,39 +204,36 @@ def _mean(column: Column) -> float:
     return float(round(mean)) if column.facts.integer else float(f"{mean:.6g}")
 
 
-def _torque(port: PortGuess, roles: Roles) -> PortGuess:
-    column = roles.ports["tau"].column
-    meaning, facts, notes = column.meaning, column.facts, dict(port.notes)
-    unit = port.unit if port.unit != "counts" else None
+def _set_torque(port: PortGuess, roles: Roles) -> None:
+    column, notes = roles.ports["tau"].column, port.notes
+    meaning, facts = column.meaning, column.facts
+    port.wrap = None
+    port.unit = port.unit if port.unit != "counts" else None
     farthest = max(abs(facts.low), abs(facts.high))
-    if unit is None and meaning.quantity == "current":
-        unit = "mA" if facts.integer or farthest > _MILLI else "A"
+    if port.unit is None and meaning.quantity == "current":
+        port.unit = "mA" if facts.integer or farthest > _MILLI else "A"
         notes["unit"] = "CHECK: no unit in the name"
-    elif unit is None and not facts.integer:
-        unit = "N.m"
+    elif port.unit is None and not facts.integer:
+        port.unit = "N.m"
         said = meaning.quantity == "torque"
         notes["unit"] = f"CHECK: no unit in the name{'' if said else '; or is it a current, in A?'}"
     if roles.drive.sign < 0:
+        port.sign = -1
         notes["sign"] = "CHECK: else the motor would gain power from friction"
     elif roles.drive.sign == 0:
         notes["sign"] = "CHECK: the log does not show it; 1 if a torque above 0 turns theta upwards"
-    sign = -1 if roles.drive.sign < 0 else 1
     notes["gear_ratio"] = "CHECK: ratio of the gear if the torque is measured after the gear"
-    return replace(port, unit=unit, sign=sign, wrap=None, notes=notes)
 
 
-def _sensor(ports: Mapping[str, PortGuess], roles: Roles) -> PortGuess:
+def _set_sensor(ports: Mapping[str, PortGuess], roles: Roles) -> None:
     port, column = ports["tau_e_sensor"], roles.ports["tau_e_sensor"].column
-    notes = dict(port.notes)
-    unit = port.unit if port.unit not in ("counts", "A", "mA") else None
-    if unit is None and not column.facts.integer:
-        unit, notes["unit"] = "N.m", "CHECK: no unit in the name"
-    port = replace(port, unit=unit, wrap=None, notes=notes)
+    port.wrap = None
+    port.unit = port.unit if port.unit not in ("counts", "A", "mA") else None
+    if port.unit is None and not column.facts.integer:
+        port.unit, port.notes["unit"] = "N.m", "CHECK: no unit in the name"
     deformation = _deformation(ports, roles)
-    together = 0.0 if deformation is None else line(deformation, column.window).correlation
-    if together > -_SURE:
-        return port
-    return port.noted("sign", "opposite to the deformation", sign=-1)
+    if deformation is not None and line(deformation, column.window).correlation <= -_SURE:
+        port.sign, port.notes["sign"] = -1, "opposite to the deformation"
 
 
 def _deformation(ports: Mapping[str, PortGuess], roles: Roles) -> Array | None:
