@@ -38,6 +38,7 @@ def write(log: Log, columns: Columns, joints: Mapping[str, JointGuess]) -> str:
     several = len(joints) > 1
     head = {
         "log": log.path.name,
+        # The name of a column may have several lines.
         "listed": "\n".join(_listed(log, columns, joints)).splitlines(),
         "several": several,
     }

@@ -59,7 +59,7 @@ OF_PORT = (
 )
 PARAMETERS = (
     Field("time.unit", "unit of time", "s", items(("s", "ms", "us", "ns", "min")), str),
-    # The first item is the start value of the FMU.
+    # The defaults are the start values of the FMU.
     Field("modality", "modality", "Residual", items(("Residual", "Sensor", "Model")), str),
     Field("method", "method", "Paper2011", items(("Paper2011", "FilteredRegression")), str),
     Field("samplePeriod", "sample period [s]", "0.001"),
