@@ -16,8 +16,7 @@ _MISSING = 1.8  # in usual steps: in a longer step, rows are lost
 _GAP = 3.0  # in usual steps: a longer step is a gap
 _EPOCH = {"ns": 1e17, "us": 1e14, "ms": 1e11, "s": 1e8}  # from about 1973 on
 _FASTEST, _SLOWEST = 2e-5, 0.2  # usual time between rows of a log [s]
-FASTEST_ROWS, SLOWEST_ROWS = 2e-5, 0.05
-"""Limits of the time between rows; outside, a stiffness can hardly be estimated [s]."""
+_SLOW = 0.05  # [s] between rows; above, a stiffness can hardly be estimated
 TURN = {"rad": 2 * np.pi, "mrad": 2000 * np.pi, "deg": 360.0, "turn": 1.0}
 """A turn in units of angle."""
 _DISTINCT = 20000  # number of values that are searched for the step of an encoder
@@ -147,7 +146,7 @@ def unit_of(meaning: Meaning, facts: Facts, values: Array) -> str:
     step = float(np.median(steps)) if len(steps) else 1e-3
     if facts.integer and step >= 1:  # a computer counts in units that are finer than its steps
         return "ms" if step < 100 else "us" if step < 50_000 else "ns"
-    return _plausible(step, _FASTEST, _SLOWEST) or "s"
+    return _plausible(step, _SLOWEST) or "s"
 
 
 def likely_unit(unit: str, T: float) -> str | None:
@@ -156,15 +155,15 @@ def likely_unit(unit: str, T: float) -> str | None:
     unit  assumed unit of the times
     T     usual time between rows with that unit [s]
     """
-    if FASTEST_ROWS <= T <= SLOWEST_ROWS:
+    if _FASTEST <= T <= _SLOW:
         return None
-    return _plausible(T / seconds(unit), FASTEST_ROWS, SLOWEST_ROWS)
+    return _plausible(T / seconds(unit), _SLOW)
 
 
-def _plausible(step: float, least: float, most: float) -> str | None:
-    """The unit in which a step is between two times [s]; None without such a unit."""
+def _plausible(step: float, most: float) -> str | None:
+    """The unit in which a step is plausible, at most so long [s]; None without such a unit."""
     units = ("s", "ms", "us", "ns")
-    return next((each for each in units if least <= step * seconds(each) <= most), None)
+    return next((each for each in units if _FASTEST <= step * seconds(each) <= most), None)
 
 
 def interval(times: Array) -> float:
