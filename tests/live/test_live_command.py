@@ -141,12 +141,3 @@ def test_wrong_arguments_are_said(options: str, expected: str, shell: Shell) -> 
     Path("short.csv").write_text("t,x\n0,1\n1,2\n")
     assert expected in shell.refused(f"live arm.toml --out out {options}")
     assert not Path("out").exists()
-
-
-def test_a_port_in_use_is_said(shell: Shell) -> None:
-    Path("arm.toml").write_text(CONFIGURATION)
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
-        other.bind(("127.0.0.1", 0))
-        source = f"udp:{other.getsockname()[1]}"
-        said = shell.refused(f"live arm.toml --out out --from {source}")
-    assert f"at 127.0.0.1, {source}: Address already in use; name another port" in said
