@@ -20,8 +20,7 @@ const answer = {
     const stiffness = curves.map((curve, i) => drawn(curve.phi, curve.sigma, curve.std, COLORS[i]));
     const torque = curves.map((curve, i) => drawn(curve.phi, curve.torque, curve.torqueStd, COLORS[i]));
     const [overTime, ...overDeformation] = this.plots, several = curves.length > 1 ? curves : [];
-    const y = fromZero(reaching(stiffness.flatMap(ends), sigma.subarray(sigma.length >> 1)));
-    overTime.draw({ x: range(t), y, curves: [drawn(t, sigma, std, "estimate")] });
+    overTime.draw({ x: range(t), y: reach(stiffness, sigma), curves: [drawn(t, sigma, std, "estimate")] });
     overDeformation.forEach((plot, place) => {
       const shown = [stiffness, torque][place];
       plot.draw({ x: range(...shown.map(({ x }) => x)), y: roomy(range(...shown.flatMap(ends))), curves: shown });
@@ -29,6 +28,15 @@ const answer = {
     });
   },
 };
+
+/** For the stiffness over time: that of the curves, and that of the second half of the log, if it is not far off. */
+function reach(curves, sigma) {
+  const [lowest, highest] = range(...curves.flatMap(ends)), [low, high] = range(sigma.subarray(sigma.length >> 1));
+  const far = 3 * Math.max(Math.abs(lowest), Math.abs(highest));
+  const least = Math.min(0, lowest, Math.max(low, -far)), most = Math.max(0, highest, Math.min(high, far));
+  const [bottom, top] = roomy([1.3 * least, 1.3 * most]);
+  return [least < 0 ? bottom : 0, most > 0 ? top : 0];
+}
 
 function inWords(run, curves, warning) {
   const values = curves.map(({ phi, sigma, std, doubt, setPoint }) => {

@@ -37,8 +37,9 @@ const PORTS = {
 function converted(values, port, { unit, per, gear, zero, reversed }) {
   const { factor, per: what } = PORTS[port].units[unit];
   if (what && !(per > 0)) throw new Error(`${port}: expected a number above 0 for ${what}, got ${per}`);
-  if (!(gear > 0)) throw new Error(`${port}: expected a gear ratio above 0, got ${gear}`);
-  const scale = ((reversed ? -1 : 1) * (what ? factor(per) : factor)) / gear;
+  if (PORTS[port].geared && !(gear > 0)) throw new Error(`${port}: expected a gear ratio above 0, got ${gear}`);
+  if (port !== "time" && !Number.isFinite(zero)) throw new Error(`${port}: expected a number as zero, got ${zero}`);
+  const scale = ((reversed ? -1 : 1) * (what ? factor(per) : factor)) / (gear || 1);
   const steady = unit === "counts" ? unwrapped(values) : values;
   return steady.map((value) => (value - (zero || 0)) * scale);
 }

@@ -130,9 +130,10 @@ const joint = {
       { x: t, y: history.get(`${name}_hat`), color: "estimate" },
     ]);
     stiffness[1].half = half;
-    const [y, yTorque] = [stiffness, torque].map(([truth, estimate]) => reaching([truth.y], estimate.y));
-    this.plots[0].draw({ x, y: fromZero(y), curves: stiffness });
-    this.plots[1].draw({ x, y: roomy(yTorque), curves: torque });
+    const [least, most] = reaching(...stiffness);
+    const y = [least < 0 ? roomy([least, most])[0] : 0, roomy([0, 1.3 * most])[1]];
+    this.plots[0].draw({ x, y, curves: stiffness });
+    this.plots[1].draw({ x, y: roomy(reaching(...torque)), curves: torque });
     const [truth, estimate] = stiffness.map((curve) => curve.y.at(-1));
     say("value-t", `${now.toFixed(2)} s`);
     say("value-true", `${truth.toFixed(1)} N·m/rad`);

@@ -38,7 +38,7 @@ const log = {
     this.forget();
     try {
       await opened;
-      if (file.size > MOST_BYTES) throw new Error(`expected at most ${MOST_BYTES / 1e6} MB`);
+      checkSize(file);
       this.table = new Table(await file.text());
     } catch (error) {
       say("log-message", `${file.name}: ${error.message}`);
@@ -90,7 +90,8 @@ const log = {
       else if (!optional) throw new Error(`${port}: choose its column`);
     }
     const { time, ...signals } = ports;
-    return { signals, T: samplePeriod(time) };
+    checkMotion(signals);
+    return { signals, T: samplePeriod(time, this.table.first) };
   },
 
   /** A field for each parameter. What the user has typed stays. */
@@ -159,7 +160,7 @@ const log = {
       await run.run((done) => { bar.value = done; }, () => this.run !== run);
       if (this.run === run) answer.show(run);
     } catch (error) {
-      if (this.run === run) say("log-message", error.message);
+      if (this.run === run) say("log-message", withAdvice(error.message, this.typed()));
     }
     if (this.run === run) bar.hidden = true; // another one may run by now
   },

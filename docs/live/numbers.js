@@ -15,9 +15,12 @@ function threeDigits(value) {
 
 /** A value and the half of its band: three digits of the band, and the value as far as the band. */
 function withBand(value, half) {
-  if (!(half > 0 && Math.max(Math.abs(value), half) < Infinity)) return shortly(value);
-  const decimals = Math.min(Math.max(2 - Math.floor(Math.log10(half)), 0), 9);
-  return printed(`${value.toFixed(decimals)} ± ${half.toFixed(decimals)}`);
+  const size = Math.max(Math.abs(value), half);
+  if (!(half > 0 && size < Infinity)) return shortly(value);
+  const power = size >= 1e5 || size < 1e-3 ? Math.floor(Math.log10(size)) : 0, unit = 10 ** power;
+  const decimals = 2 - Math.floor(Math.log10(Number((half / unit).toPrecision(3))));
+  const [a, b] = [value, half].map((each) => (each / unit).toFixed(Math.min(Math.max(decimals, 0), 9)));
+  return printed(power ? `(${a} ± ${b})e${power}` : `${a} ± ${b}`);
 }
 
 function printed(text) {

@@ -193,9 +193,9 @@ function range(...arrays) {
   return high > low ? [low, high] : [low - (Math.abs(low) || 1) / 2, high + (Math.abs(high) || 1) / 2];
 }
 
-/** The range of some curves and of most of an estimate of them, which may be far off for a while. */
-function reaching(curves, estimate) {
-  const [low, high] = range(...curves), most = 2 * (high - low);
+/** The range of a truth and of most of an estimate of it, which may be far off for a while. */
+function reaching({ y: truth }, { y: estimate }) {
+  const [low, high] = range(truth), most = 2 * (high - low);
   const some = estimate.filter((value, i) => i % 50 === 0 && !Number.isNaN(value)).sort();
   const at = (share) => some[Math.floor(share * (some.length - 1))] ?? low;
   return [
@@ -208,10 +208,4 @@ function reaching(curves, estimate) {
 function roomy([low, high]) {
   const room = 0.05 * (high - low), step = 10 ** Math.floor(Math.log10(high - low)) / 5;
   return [Math.floor((low - room) / step) * step, Math.ceil((high + room) / step) * step];
-}
-
-/** The range of a stiffness with more room, from 0 unless some of it is negative. */
-function fromZero([low, high]) {
-  const [least, most] = roomy([Math.min(1.3 * low, 0), Math.max(1.3 * high, 0)]);
-  return [low < 0 ? least : 0, high > 0 ? most : 0];
 }
