@@ -118,17 +118,6 @@ def test_a_prior_of_zero_removes_its_columns_and_no_other(c: Library, prior: str
     assert set(of_all) - set(without) == set(COLUMNS_OF[prior])
 
 
-@pytest.mark.parametrize("prior", [name for name in PLAIN if name != "prior.torque_gain"])
-def test_a_prior_of_zero_is_the_limit_of_small_priors(c: Library, prior: str) -> None:
-    z = MisfitJoint(duration=3.0).measurements()
-    zero = Estimator(c, {**SETTINGS, prior: 0.0}).run(z)
-    small = Estimator(c, {**SETTINGS, prior: 1e-10}).run(z)
-    # The next passes begin at other times, as a pass has as many steps as there are columns.
-    late = slice(2900, None)
-    assert zero["sigma"][late] == pytest.approx(small["sigma"][late], rel=1e-2)
-    assert zero["sigma_std"][late] == pytest.approx(small["sigma_std"][late], rel=0.1)
-
-
 # The gain of the torque
 
 

@@ -7,7 +7,7 @@ import pytest
 from scipy import signal
 
 from c_library import Array, Library
-from dense_signals import direction, through
+from dense_signals import direction
 from reference_joints import round_to_counts
 
 COUNTS = 40000.0
@@ -174,17 +174,3 @@ def test_at_rest_the_state_becomes_zero_and_never_denormal(c: Library) -> None:
         behind = [stage[0] for stage in filters.filters.behind]
         assert all(value == 0.0 or abs(value) > 1e-300 for value in behind)
     assert behind == [0.0] * 3
-
-
-@pytest.mark.parametrize("samples", [1, 5])
-@pytest.mark.parametrize("w", [50.0, 350.0, 1500.0])
-def test_noise_gain_is_the_sum_over_the_response_to_a_sample(
-    c: Library, w: float, samples: int
-) -> None:
-    """By Parseval's theorem the integral over all frequencies."""
-    pulse = np.concatenate([[0.0], np.full(samples, 1 / samples), np.zeros(20_000)])
-    found = [c.ffi.new("sh_real *") for _ in range(2)]
-    c.lib.sh_state_variable_filter_noise(design(c, w), 1.0, samples, *found)
-    for gain, order in zip(found, (0, 2), strict=True):
-        want = np.sum(through(pulse, order, w, T) ** 2)
-        assert gain[0] / samples == pytest.approx(want, rel=1e-6)
