@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.signal import lfilter
 
 from c_library import Array, Library
 from dense_change import Change
@@ -22,9 +23,9 @@ from dense_signals import (
     SENSOR,
     TORQUE,
     Filtered,
-    Held,
     Inputs,
     Parameters,
+    as_if_smooth,
     bandwidth,
     decimation,
     place_of_knee,
@@ -661,13 +662,14 @@ class Oracle:
         of_motor = [i for i, kind in enumerate(self.kinds) if kind in ("SIN_M", "COS_M")]
         errors = {i: filtered.encoder_error(i) for i in of_motor}
         derivatives = filtered.torque_derivatives()
-        load, loads = Held(self.w, self.T), np.zeros(len(rough))
+        smooth, state, loads = as_if_smooth(self.w, self.T), np.zeros(3), np.zeros(len(rough))
         for at, k in enumerate(range(run.start, run.stop)):
             self.deform(k, at)
             if at:
                 self.unsure = self.unsure + 1 if filtered.unknown[at] > 0 else 0
                 tau_e = self.torque(k) if self.known else self.y
-                loads[at] = load.step(-abs(tau_e) * filtered.sign[at])
+                mean = [-abs(tau_e) * filtered.sign[at]]
+                loads[at : at + 1], state = lfilter(*smooth, mean, zi=state)
             self.settling = max(self.settling - self.T, 0)
             settled, complete = self.settling <= 0, False
             if settled:

@@ -38,6 +38,13 @@ def through(x: Array, order: int, w: float, T: float, held: bool = False) -> Arr
     return response(x - x[0], "foh") + response(np.broadcast_to(x[0], x.shape), "zoh")
 
 
+@cache
+def as_if_smooth(w: float, T: float) -> tuple[Array, Array]:
+    """Filter of a signal that is given by its mean over each sample, after that sample."""
+    (b, a), (of_second, _) = (discrete(order, w, T, "zoh") for order in (0, 2))
+    return (b + T**2 / 12 * of_second)[1:], a  # without the 0 for the sample to come
+
+
 def resolution(counts: float) -> float:
     """Resolution of an encoder [rad]; 0 without quantisation."""
     return 2 * math.pi / counts if counts else 0.0
@@ -239,10 +246,11 @@ class Filtered:
         """What does not depend on the estimate; LOAD, DELAY, SIN_M, and COS_M are set later."""
         kind, _, prior = self.columns[i]
         sign = np.append(self.sign[1:], 0.0)
+        smooth = np.asarray(signal.lfilter(*as_if_smooth(self.w, self.T), self.sign))
         of_motor: dict[str, Callable[[], Array]] = {
             "REVERSAL": lambda: abs(self.gamma) * self.filtered(sign, 1, True),
-            "COULOMB": lambda: -abs(self.gamma) * self.as_if_smooth(sign),
-            "DRIVE": lambda: -self.as_if_smooth(sign),  # times the torque, which is of the mean
+            "COULOMB": lambda: -abs(self.gamma) * smooth,
+            "DRIVE": lambda: -smooth,  # times the torque, which is of the mean
             "VISCOUS": lambda: -self.viscous,
             "INERTIA": lambda: -self.inertial,
         }
@@ -256,10 +264,6 @@ class Filtered:
             return self.filtered(self.F[:, i] - self.F[0, i], 1)
         return self.filtered(self.F[:, i], 0)
 
-    def as_if_smooth(self, sign: Array) -> Array:
-        held: Array = self.filtered(sign, 0, True) + self.T**2 / 12 * self.filtered(sign, 2, True)
-        return held
-
     def torque_derivatives(self) -> tuple[Array, Array]:
         return self.filtered(self.torque, 1, self.held), self.filtered(self.torque, 2, self.held)
 
@@ -269,17 +273,3 @@ class Filtered:
         motor = self.of_velocity * self.filtered(f - f[0], 1)
         motor = motor + self.of_acceleration * self.filtered(f - f[0], 2)
         return f[0] + self.filtered(f - f[0], 0), motor
-
-
-class Held:
-    """A filter of a signal that is given sample by sample, by its mean."""
-
-    def __init__(self, w: float, T: float) -> None:
-        A, B, C, D = signal.tf2ss([[w**3, 0, 0], [0, 0, w**3]], np.poly([-w] * 3))
-        self.A, self.B, self.C, _, _ = signal.cont2discrete((A, B, C, D), T, method="zoh")
-        self.state, self.T = np.zeros((3, 1)), T
-
-    def step(self, mean: float) -> float:
-        self.state = self.A @ self.state + self.B * mean
-        second, output = (self.C @ self.state).ravel()
-        return float(output + self.T**2 / 12 * second)
