@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from fmpy import fmi2
 
-from fmi_functions import of_an_instance
+from fmi_functions import VARIABLES, of_an_instance
 from fmi_instance import DISCARD, ERROR, OK, REAL, SIZE, WARNING, Instance, Instance3
 from fmi_runs import ESTIMATORS, FMI2, PLANTS, Driver, Fmi, limits, names
 
@@ -152,7 +152,6 @@ def test_a_deformation_far_beyond_its_range_is_reported_once(method: int, fmi: F
 
 INSTANTIATED, INITIALISATION, STEP, TERMINATED = "instantiated", "initialisation", "step", "end"
 EVERYWHERE = {INSTANTIATED, INITIALISATION, STEP, TERMINATED}
-VARIABLES = r"(Real|Integer|Boolean|String|(U?Int|Float)\d+|Binary|Clock)"
 ALLOWED = {
     r"fmi.(SetDebugLogging|Reset|\w*FMU[Ss]tate\w*)": EVERYWHERE,
     r"fmi.(SetupExperiment|EnterInitializationMode)": {INSTANTIATED},

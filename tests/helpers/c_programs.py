@@ -1,20 +1,13 @@
-"""The programs of `drivers/`, each linked with the sources of one FMU.
+"""The programs of `drivers/`, each linked with the sources of one FMU."""
 
-If a compiler or a checker is missing, the test is skipped. In the gate, which sets SIGMAHAT_GATE=1,
-it fails.
-"""
-
-import shutil
-import subprocess
 import tempfile
 from functools import cache
 from pathlib import Path
 
-import fmpy
-
 from c_sources import FOLDERS, REPOSITORY, SOURCES
+from controllers import run
+from fmi_functions import HEADERS
 from fmi_runs import ESTIMATORS
-from gate import missing
 
 FMU_SOURCES = REPOSITORY / "fmu_src"
 PLANT_SOURCES = ("plant.c", "radau.c", "noise.c")
@@ -52,40 +45,12 @@ def compile_driver(
     program = Path(tempfile.mkdtemp(dir=folder)) / f"{driver}_{version}_{fmu}"
     folders = [*FOLDERS, FMU_SOURCES, FMU_SOURCES / "shell", build / "fmu" / fmu]
     files = [DRIVERS / f"{driver}.c", *sources(fmu, build, version)]
-    command = [
+    run(
         # -gdwarf-4: valgrind cannot read newer debug information
         *(compiler, "-gdwarf-4", "-O1", "-ffp-contract=off", *flags, f"-DSH_FMI={version[-1]}"),
         *(f"-I{path}" for path in folders),
-        f"-isystem{Path(fmpy.__file__).parent / 'c-code'}",
-        *(str(path) for path in files),
-        *("-lm", "-o", str(program)),
-    ]
-    done = subprocess.run(command, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
+        *(f"-isystem{HEADERS}", "-o", str(program)),
+        *files,
+        "-lm",
+    )
     return program
-
-
-@cache
-def _works(compiler: str, flags: tuple[str, ...], folder: Path, text: str) -> bool:
-    source = folder / "probe.c"
-    source.write_text(text)
-    build = [compiler, *flags, str(source), "-o", str(folder / "probe")]
-    run = [str(folder / "probe"), "-runs=1"]
-    return all(
-        subprocess.run(command, capture_output=True, cwd=folder).returncode == 0
-        for command in (build, run)
-    )
-
-
-def compiler_with(flags: tuple[str, ...], folder: Path) -> str:
-    """A compiler that can build programs with these flags that run; a runtime may be missing."""
-    text = "int main(void) { return 0; }\n"
-    if any("fuzzer" in flag for flag in flags):
-        text = "int LLVMFuzzerTestOneInput(void) { return 0; }\n"
-    for compiler in ("clang", "gcc"):
-        if shutil.which(compiler) and _works(compiler, flags, folder, text):
-            return compiler
-    missing(
-        f"a compiler that builds programs with {' '.join(flags) or 'no options'}",
-        "apt-get install clang libclang-rt-dev",
-    )

@@ -16,6 +16,7 @@ _PACKAGES = {
     "c++": "g++",
     "cc": "gcc",
     "chromedriver": "chromium-driver",
+    "clang": "clang libclang-rt-dev",
     "clang++": "clang",
     "frama-c": "frama-c-base",
     "ip": "iproute2",

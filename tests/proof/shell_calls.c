@@ -12,6 +12,7 @@
         __VA_ARGS__;                                                                               \
         break
 
+#define INSTANCE (&instance)
 #define OR_NULL(pointer) (any_choice() ? (pointer) : NULL)
 
 enum { WAYS = SH_FMI == 3 ? 3 : 1 }; /* only FMI 3.0 announces a number of values of its own */
@@ -33,7 +34,7 @@ static size_t any_number(size_t n, int way)
                       : Frama_C_size_t_interval(n + 1, SIZE_MAX);
 }
 
-/* Written by test_shell_proof.py from the header of the standard. call_any(which) calls one of CALLS
+/* Written by helpers/fmi_functions.py from the header of the standard. call_any(which) calls one of CALLS
  * functions of an instance, with any arguments that FMI allows, and NULL. access_any(which, vr, n, way)
  * calls one of ACCESSES functions of variables, with n references, and arrays of exactly the announced
  * length.

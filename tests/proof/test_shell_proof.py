@@ -12,15 +12,12 @@ import pytest
 
 from c_sources import REPOSITORY
 from eva import analyse, library_source, with_fault
-from fmi_functions import HEADERS, of_an_instance
+from fmi_functions import HEADERS, write_calls
 
 PROOF = REPOSITORY / "tests" / "proof"
 SOURCES = REPOSITORY / "fmu_src"
 SHELL = SOURCES / "shell"
 DRIVERS = REPOSITORY / "tests" / "drivers"
-VARIABLES = r"(Real|Integer|Boolean|String|(U?Int|Float)\d+|Binary|Clock)"
-# No variable has one of these types: their functions are those of String but for their names.
-LIKE_STRING = r"[GS]et(Float32|U?Int8|U?Int16|UInt32|UInt64)"
 LENGTH_CHECK = """    if (size != block_size()) {
         return "is truncated or too long";
     }
@@ -70,9 +67,7 @@ APART_IN_A_PLANT = [
 ]
 
 # Of an instance when a call begins.
-APART_BY = [
-    f"//@ dynamic_split instance.{member};\n" for member in ("parameters_unchecked", "state")
-]
+APART_BY = [f"//@ dynamic_split instance.{member};" for member in ("parameters_unchecked", "state")]
 
 slow = pytest.mark.slow("the analysis of a shell")
 
@@ -120,63 +115,6 @@ def alarms_of(
     return found.alarms
 
 
-def any_call(prefix: str, name: str, parameters: Sequence[str]) -> str:
-    """A call of a function of an instance, in C, with any arguments and NULL."""
-    numbers = {
-        "size_t": "any_size()",
-        f"{prefix}Real": "any_real()",
-        f"{prefix}Float64": "any_real()",
-    }
-    arguments = ["&instance"]
-    for parameter in parameters[1:]:
-        kind = parameter.removeprefix("const ").split("*")[0].split()[0]
-        if parameter.endswith("]"):
-            arguments.append("NULL")
-        elif "*" in parameter:
-            arguments.append(f"OR_NULL(any_array(sizeof({kind})))")
-        else:
-            arguments.append(numbers.get(kind, f"({kind})any_int()"))
-    return f"{prefix}{name}({', '.join(arguments)})"
-
-
-def any_access(prefix: str, name: str, parameters: Sequence[str]) -> str:
-    """A call of a function of variables, in C."""
-    arguments, lengths = ["&instance", "vr"], iter(["n", "any_number(n, way)"])
-    for parameter in parameters[2:]:
-        kind = parameter.removeprefix("const ").split()[0]
-        if not parameter.endswith("]"):
-            arguments.append(next(lengths))
-        elif kind == "size_t":  # lengths of binary values, of which there are none
-            arguments.append("NULL")
-        else:
-            arguments.append(f"any_array(way == 0 ? n * sizeof({kind}) : 0)")
-    return f"{prefix}{name}({', '.join(arguments)})"
-
-
-def write_calls(prefix: str, header: Path) -> None:
-    """Writes what shell_calls.c includes, for all functions of a version of FMI.
-
-    Those of the state of an FMU are in shell_calls.c itself.
-    """
-    calls, accesses = [], []
-    for name, parameters in of_an_instance(prefix).items():
-        if re.fullmatch(LIKE_STRING, name):
-            continue
-        if re.fullmatch(rf"[GS]et({VARIABLES}|Real(In|Out)putDerivatives)", name):
-            accesses.append(any_access(prefix, name, parameters))
-        elif "FMU" not in name:
-            calls.append(any_call(prefix, name, parameters))
-    lines = []
-    for size, function, bodies in (
-        ("CALLS", "call_any(int which)", calls),
-        ("ACCESSES", "access_any(int which, const uint32_t vr[], size_t n, int way)", accesses),
-    ):
-        cases = [f"case {i}: {body}; break;" for i, body in enumerate(bodies)]
-        lines += [f"enum {{ {size} = {len(bodies)} }};", f"static void {function}"]
-        lines += ["{", *APART_BY, "switch (which) {", *cases, "}", "}"]
-    header.write_text("\n".join(lines))
-
-
 def alarms_of_calls(
     build: Path, version: str, folder: Path, *, shell: Path = SHELL
 ) -> tuple[str, ...]:
@@ -185,7 +123,7 @@ def alarms_of_calls(
     for source in sorted((SOURCES / version).glob("*.c")):
         copies.append(folder / source.name)
         copies[-1].write_text(LOGGER.sub("NULL", source.read_text()))
-    write_calls(version, folder / "calls.h")
+    write_calls(version, folder / "calls.h", APART_BY)
     outcomes, macros = OUTCOMES_OF_A_VERSION[version], {"SH_FMI": version[-1]}
     return alarms_of(
         build, "shell_calls.c", shell=shell, version=copies, outcomes=outcomes, macros=macros
