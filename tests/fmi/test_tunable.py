@@ -13,6 +13,7 @@ import sigmahat
 from c_library import MEASUREMENTS, Estimator, load
 from fmi_instance import OK, unpacked
 from fmi_runs import ESTIMATORS, FMI2, OTHER_THAN_0, PLANTS, SIGNALS, names
+from regression_joint import WITHOUT_MISFITS
 
 T = 1e-3  # s
 STEPS = 260  # a second pass begins after 0.2 s
@@ -33,13 +34,8 @@ CONFIGURATION: dict[str, dict[str, float]] = {
     "motor.stribeck": {"motor.tau_coulomb": 0.02, "motor.v_stribeck": 5.0},
     # By tau the stiffness is negative.
     "limit.relative_std": {"limit.relative_std": 1e12, "modality": 2},
-    "regression.drift": {  # so few columns that two passes take less than the run
-        "rls.n": 1,
-        "rls.m": 1,
-        **{f"prior.{name}": 0 for name in ("bias", "damping", "load_friction", "eccentric")},
-        **{f"prior.{name}": 0 for name in ("delay", "reversal", "power", "gap", "hysteresis")},
-        "prior.eccentric_motor": 0,
-    },
+    # So few columns that two passes take less than the run.
+    "regression.drift": {"rls.n": 1, "rls.m": 1, **WITHOUT_MISFITS},
 }
 # Start values for each method. SIGNALS start in motion, from which a fast filter soon settles; the
 # estimator makes it slower than regression.bandwidth unless the encoder is fine.

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from c_sources import FOLDERS, HEADERS, REPOSITORY, SOURCES
+from controllers import run
 from gate import need
 
 Array = NDArray[np.float64]
@@ -122,15 +123,12 @@ def compile_library(parent: Path, real: str, *flags: str) -> Library:
     In plain C, as a controller compiles it.
     """
     folder = Path(tempfile.mkdtemp(dir=parent))
-    subprocess.run(
-        [
-            *(need("cc"), "-std=gnu99", "-O1", "-ffp-contract=off", "-fPIC", "-shared", *flags),
-            *("-D_GNU_SOURCE", f"-DSH_FOR_{LONG}(a,b)=a##f64x", f"-DSH_IS_{LONG}=0"),
-            *(f"-DSH_REAL={real}", f"-I{DRIVERS}", *(f"-I{each}" for each in FOLDERS)),
-            *map(str, [*SOURCES, DRIVERS / "run.c"]),
-            *("-lm", "-o", str(folder / FILE)),
-        ],
-        check=True,
+    run(
+        *(need("cc"), "-std=gnu99", "-O1", "-ffp-contract=off", "-fPIC", "-shared", *flags),
+        *("-D_GNU_SOURCE", f"-DSH_FOR_{LONG}(a,b)=a##f64x", f"-DSH_IS_{LONG}=0"),
+        *(f"-DSH_REAL={real}", f"-I{DRIVERS}", *(f"-I{each}" for each in FOLDERS)),
+        *(*SOURCES, DRIVERS / "run.c"),
+        *("-lm", "-o", str(folder / FILE)),
     )
     return Library(folder, real)
 

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from controllers import run
 from gate import need
 
 OPTIONS = (
@@ -87,7 +88,4 @@ def with_fault(source: Path, copy: Path, file: str, code: str, fault: str = "") 
 
 def library_source(name: str) -> Path:
     """A source of the C library that comes with Frama-C."""
-    done = subprocess.run(
-        [need("frama-c"), "-print-share-path"], capture_output=True, text=True, check=True
-    )
-    return Path(done.stdout.strip()) / "libc" / name
+    return Path(run(need("frama-c"), "-print-share-path").strip()) / "libc" / name

@@ -1,15 +1,15 @@
 """What the documentation names is there: files, functions. The build of the site checks links."""
 
 import re
-import subprocess
 from functools import cache
 from pathlib import Path
 
 import pytest
 
+from c_sources import REPOSITORY
+from controllers import run
 from gate import need
 
-REPOSITORY = Path(__file__).resolve().parents[2]
 PAGES = sorted(
     page
     for page in REPOSITORY.glob("**/*.md")
@@ -25,8 +25,7 @@ NOT_OURS = re.compile(
 
 @cache
 def tracked() -> list[str]:
-    command = [need("git"), "-C", str(REPOSITORY), "ls-files"]
-    return subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()
+    return run(need("git"), "-C", REPOSITORY, "ls-files").splitlines()
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(REPOSITORY)))

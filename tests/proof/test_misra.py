@@ -13,6 +13,7 @@ import pytest
 
 import c_sources
 from c_sources import REPOSITORY
+from controllers import run
 from gate import missing, need
 
 PAGE = REPOSITORY / "docs" / "proof" / "misra.md"
@@ -49,11 +50,9 @@ def cppcheck() -> None:
     """The version that the page names: another one finds other places."""
     named = re.search(r"cppcheck (\d+\.\d+)", PAGE.read_text(encoding="utf-8"))
     assert named
-    done = subprocess.run(
-        [need("cppcheck"), "--version"], capture_output=True, text=True, check=True
-    )
-    if done.stdout.split()[1] != named[1]:
-        missing(f"cppcheck {named[1]}", f"apt-get install cppcheck; there is {done.stdout}")
+    there = run(need("cppcheck"), "--version")
+    if there.split()[1] != named[1]:
+        missing(f"cppcheck {named[1]}", f"apt-get install cppcheck; there is {there}")
 
 
 def addons() -> Path:

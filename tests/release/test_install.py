@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+import controllers
 import sigmahat
 from gate import missing, need
 from recorded_logs import CONFIGURATION, awas_log, write_log
@@ -37,7 +38,7 @@ def outside() -> dict[str, str]:
 def clone(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Fresh clone of what is committed."""
     folder = tmp_path_factory.mktemp("clone") / "sigmahat"
-    subprocess.run([need("git"), "clone", "-q", REPOSITORY, folder], check=True)
+    controllers.run(need("git"), "clone", "-q", REPOSITORY, folder)
     return folder
 
 
@@ -84,13 +85,12 @@ def test_the_package_is_for_the_platform_and_any_python(programs: Path) -> None:
 def test_source_distribution_holds_what_git_holds(clone: Path, tmp_path: Path) -> None:
     """So it builds if the clone does."""
     code = "import sys; from scikit_build_core.build import build_sdist; build_sdist(sys.argv[1])"
-    subprocess.run([sys.executable, "-c", code, tmp_path], cwd=clone, check=True)
+    controllers.run(sys.executable, "-c", code, tmp_path, cwd=clone)
     (path,) = tmp_path.iterdir()
     with tarfile.open(path) as archive:
         files = {name.split("/", 1)[1] for name in archive.getnames()}
-    git = [need("git"), "ls-files", "-z"]
-    tracked = subprocess.run(git, cwd=clone, capture_output=True, text=True, check=True)
-    assert files == {*tracked.stdout.split("\0"), "PKG-INFO"} - {""}
+    tracked = controllers.run(need("git"), "ls-files", cwd=clone).splitlines()
+    assert files == {*tracked, "PKG-INFO"}
 
 
 def test_commands_give_what_the_development_tree_gives(programs: Path, tmp_path: Path) -> None:
