@@ -502,6 +502,11 @@ def test_a_step_after_the_stop_time_is_refused(name: str, fmi: Fmi) -> None:
             count = round(0.01 / h)
             fmu.initialise(start=1.0, stop=1.01)
             Driver(fmu, held=True).run([(1.0 + k * h, h) for k in range(count)])
+            state = fmu.save()
+            assert fmu.call("Reset") == OK
+            fmu.initialise()
+            assert fmu.restore(state) == OK  # with its stop time
+            fmu.free(state)
             for late in (h, 2.1e-3 * h, h):
                 said = "expected an end not after stopTime = 1.01 s"
                 refused(fmu, said, fmu.step, 1.0 + count * h, late)
