@@ -103,8 +103,7 @@ def test_commands_give_what_the_development_tree_gives(programs: Path, tmp_path:
 def test_every_command_has_what_it_needs(programs: Path, tmp_path: Path) -> None:
     log = awas_log(1.0, 0.3, duration=4.0)
     del log["true"]
-    write_log(log, tmp_path / "a.csv")
-    (tmp_path / "a.toml").write_text(CONFIGURATION, encoding="utf-8")
+    write_log(log, tmp_path / "a.csv", CONFIGURATION)
     for command in (
         "init a.csv --config guessed.toml",
         "identify a.csv",
