@@ -83,6 +83,11 @@ static int any_int(void)
     return seldom(8) ? ODD[below(5)] : 1 + (int)below(3);
 }
 
+static size_t any_size(void)
+{
+    return seldom(8) ? (size_t)bits() : below(4);
+}
+
 /* Up to TEXT - 1 bytes of any kind, or NULL. */
 static const char *some_text(char *text)
 {
@@ -173,6 +178,12 @@ static void *some_instance(const char *name, const char *token)
                                        &environment, how & 16 ? NULL : logger, NULL);
 }
 
+/* How many values are announced for n references: their number, fewer, or more. */
+static size_t any_number(size_t n, int way)
+{
+    return way == 0 ? n : way == 1 ? below((unsigned)n) : n + 1 + (any_size() >> 1);
+}
+
 #endif
 
 /* What calls.h asks for. */
@@ -182,17 +193,6 @@ static void *some_instance(const char *name, const char *token)
 static double any_real(void)
 {
     return some_real(1.0);
-}
-
-static size_t any_size(void)
-{
-    return seldom(8) ? (size_t)bits() : below(4);
-}
-
-/* How many values are announced for n references: their number, fewer, or more. */
-static size_t any_number(size_t n, int way)
-{
-    return way == 0 ? n : way == 1 ? below((unsigned)n) : n + 1 + (any_size() >> 1);
 }
 
 /* An array for the present call: numbers near 1, or small integers of some width. */

@@ -102,4 +102,4 @@ def write_calls(
         cases = [f"case {i}: {body}; break;" for i, body in enumerate(bodies)]
         lines += [f"enum {{ {size} = {len(bodies)} }};", f"static void {function}"]
         lines += ["{", *before, "switch (which) {", *cases, "}", "}"]
-    header.write_text("\n".join(lines))
+    header.write_text("\n".join([*lines, ""]))
