@@ -1,11 +1,11 @@
 """The programs of `drivers/`, each linked with the sources of one FMU."""
 
+import subprocess
 import tempfile
 from functools import cache
 from pathlib import Path
 
 from c_sources import FOLDERS, REPOSITORY, SOURCES
-from controllers import run
 from fmi_functions import HEADERS
 from fmi_runs import ESTIMATORS
 
@@ -45,12 +45,13 @@ def compile_driver(
     program = Path(tempfile.mkdtemp(dir=folder)) / f"{driver}_{version}_{fmu}"
     folders = [*FOLDERS, FMU_SOURCES, FMU_SOURCES / "shell", build / "fmu" / fmu]
     files = [DRIVERS / f"{driver}.c", *sources(fmu, build, version)]
-    run(
+    command = [
         # -gdwarf-4: valgrind cannot read newer debug information
         *(compiler, "-gdwarf-4", "-O1", "-ffp-contract=off", *flags, f"-DSH_FMI={version[-1]}"),
         *(f"-I{path}" for path in folders),
-        *(f"-isystem{HEADERS}", "-o", str(program)),
-        *files,
-        "-lm",
-    )
+        *(f"-isystem{HEADERS}", *map(str, files), "-lm", "-o", str(program)),
+    ]
+    # With no limit of time: a compiler may have to make its C library first, which takes minutes.
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
     return program
