@@ -1,6 +1,5 @@
 """`sigmahat identify`: powers of the deformation, for springs that are symmetric or not."""
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -84,24 +83,3 @@ def test_check_names_an_asymmetric_spring(stiffer: float, is_named: bool) -> Non
         found = check(log_of(stiffer, 3), in_memory(CONFIGURATION + text)).findings
         named = [each for each in found if each.kind is Kind.ASYMMETRY]
         assert [(each.key, each.proposed) for each in named] == [("rls.symmetric", False)] * names
-
-
-def test_what_identify_wrote_is_not_asked_for(path: Path) -> None:
-    """GIVEN odd powers that identify has chosen, THEN the next run is as free as the first."""
-    log = log_of(STIFFER, 4)
-    free = identify(log, read_configuration(path))
-    assert not free.symmetric
-    write(replace(free, symmetric=True), path)
-    configuration = read_configuration(path)
-    assert configuration.parameters["rls.symmetric"] and configuration.symmetric_chosen
-    again = identify(log, configuration)
-    assert not again.symmetric
-    write(again, path)
-    configuration = read_configuration(path)
-    assert configuration.parameters["rls.symmetric"] is False and not configuration.symmetric_chosen
-    # THEN what somebody has asked for is not marked, however often identify runs
-    path.write_text(CONFIGURATION + ODD)
-    for _ in range(2):
-        write(identify(log, read_configuration(path)), path)
-        assert read_configuration(path).parameters["rls.symmetric"]
-        assert not read_configuration(path).symmetric_chosen

@@ -95,7 +95,7 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
     longest = max(pieces, key=lambda piece: len(piece.theta))
     noise = TorqueNoise.of(longest.tau, longest.theta, every, T)
     bandwidth = noise.bandwidth
-    symmetric = bool(start.get("rls.symmetric", False)) and not configuration.symmetric_chosen
+    symmetric = bool(start.get("rls.symmetric", False))
     coherent = math.inf if torque_constant else coherent_range(longest, gamma, noise)
     apart = _apart(pieces, count(every))
     h = apart * T

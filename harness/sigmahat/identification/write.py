@@ -16,7 +16,6 @@ from sigmahat.logs import joints
 from sigmahat.logs.configuration import (
     ANOTHER_ROBOT,
     ANY_COULOMB,
-    CHOSEN,
     NOT_YOURS,
     WIDE_PRIOR,
     Port,
@@ -32,7 +31,7 @@ _ERROR_OF_B = 0.15
 """Least relative prior of B: RMS of its error on joints whose friction or spring the regression has
 no columns for. There the error is up to five times the interval, which contains only chance."""
 _MIDDLE = "not known: the middle of what identify holds possible"
-_NOT_KNOWN = (WIDE_PRIOR, NOT_YOURS, _MIDDLE, CHOSEN)
+_NOT_KNOWN = (WIDE_PRIOR, NOT_YOURS, _MIDDLE)
 """Comments of values that the next log may tell."""
 
 
@@ -83,8 +82,6 @@ def update(document: tomlkit.TOMLDocument, found: Identified, joint: str = "") -
     comments = {name: comment for name, (_, comment) in unknown.items()}
     wide = {n: std for n, std in _wide_priors(found, comments).items() if not given.get(n)}
     comments |= {name: WIDE_PRIOR for name in wide if name not in given}
-    if found.symmetric and not given.get("rls.symmetric"):
-        comments["rls.symmetric"] = CHOSEN
     values |= {name: value for name, (value, _) in unknown.items()} | wide
     for name, value in values.items():
         item = tomlkit.item(_short(value))

@@ -26,8 +26,6 @@ FILL_IN = "FILL IN"
 """Text in place of an unknown column; also the first words of comments on missing values."""
 NOT_YOURS = "not known: of another robot, until identify finds it or you set it"
 """Comment of a motor parameter that the user has not set."""
-CHOSEN = "chosen by identify; without this comment, it is your choice"
-"""Comment of rls.symmetric if identify chose its value."""
 WIDE_PRIOR = "wide, because it is not known; make it smaller if you know better"
 """Comment of a prior of such a parameter."""
 ANOTHER_ROBOT = 1000.0
@@ -107,8 +105,6 @@ class Configuration:
     time: Time  #: When the samples were taken.
     ports: Mapping[str, Port]  #: Ports by input of `StiffnessEstimator`.
     parameters: Mapping[str, Value]  #: Start values of `StiffnessEstimator`, by its names.
-    symmetric_chosen: bool = False
-    """Whether identify chose rls.symmetric: the next run may choose again."""
     joint: str = ""  #: Name of the joint in a file of several joints.
 
     def need_ports(self, modality: str) -> None:
@@ -179,9 +175,8 @@ def checked_configuration(
                 "where the port does not change"
             )
     _refuse_repeated(file, path)
-    chosen = any(line.rstrip().endswith(CHOSEN) for line in tomlkit.dumps(own).splitlines())
     values = dict(toml_file.dotted(file.parameters))
-    return Configuration(path, file.time, file.ports, values, chosen, joint)
+    return Configuration(path, file.time, file.ports, values, joint)
 
 
 def _refuse_repeated(file: _File, path: Path) -> None:
