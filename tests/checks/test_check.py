@@ -67,11 +67,6 @@ def test_a_wrong_key_is_named_first_with_the_right_value(name: str) -> None:
         assert name not in PROPOSED or first.proposed == PROPOSED[name]
 
 
-def test_a_proposed_delay_puts_the_torque_right() -> None:
-    late = RIGHT.replace('"current"', '"late_current"\ndelay = 0.010')
-    assert wrong(knee_log(), late) == []
-
-
 EVEN_POWERS = RIGHT.replace("rls.n = 1", "rls.symmetric = false\nrls.n = 6")
 """As after identify, which chooses a polynomial with even powers for most joints."""
 

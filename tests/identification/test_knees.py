@@ -1,6 +1,6 @@
 """The places at which the slope of a spring changes at once, from motions in closed form."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -41,18 +41,14 @@ def piece(spring: Spring, blow: float = 0.0) -> Signals:
     return Signals(theta, phi + ZERO, np.ones(len(t)), tau, None)
 
 
-@pytest.mark.parametrize("share", [0.2, 0.43, 0.7])
-@pytest.mark.parametrize("ratio", [1.5, 0.5])
-def test_the_knee_of_a_spring_is_found(share: float, ratio: float) -> None:
-    k = share * LARGEST
-    (found,) = knees([piece(knee(k, ratio=ratio))], T, GAMMA, FORM, ZERO)
-    assert found == pytest.approx(k, abs=FOUND)
-
-
-def test_both_knees_of_a_harmonic_drive_are_found() -> None:
-    """GIVEN the three slopes K_1, K_2, K_3 of their catalogues."""
-    places = (0.25 * LARGEST, 0.6 * LARGEST)
-    found = knees([piece(knee(*places, ratio=1.5))], T, GAMMA, FORM, ZERO)
+@pytest.mark.parametrize(
+    ("shares", "ratio"),
+    [*(((k,), ratio) for k in (0.2, 0.43, 0.7) for ratio in (1.5, 0.5)), ((0.25, 0.6), 1.5)],
+)
+def test_the_knees_of_a_spring_are_found(shares: Sequence[float], ratio: float) -> None:
+    """Two of them as in harmonic drives: the slopes K_1, K_2, K_3 of their catalogues."""
+    places = [share * LARGEST for share in shares]
+    found = knees([piece(knee(*places, ratio=ratio))], T, GAMMA, FORM, ZERO)
     assert found == pytest.approx(places, abs=FOUND)
 
 
