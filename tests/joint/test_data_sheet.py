@@ -267,8 +267,6 @@ def test_names_cannot_end_a_comment_or_a_text(knee: Shell) -> None:
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        ("knee", "Missing option '--to'"),
-        ("knee --to simulink", "'simulink' is not one of 'ssv', 'matlab', 'modelica'"),
         ("nothere --to ssv", "nothere: No such file or directory; name the folder or the"),
         (". --to ssv", "joint.json: No such file"),
         ("knee.toml --to ssv", "expected the joint.json that `sigmahat estimate` wrote"),

@@ -164,7 +164,7 @@ def with_bytes(changed: Callable[[bytes], bytes]) -> Callable[[State], bytes]:
         ),
         (with_bytes(lambda b: b[:-8]), "truncated"),
         (lambda _: b"", "got no JSON"),
-        (lambda _: b"\xff\xfe", "not text"),
+        (lambda _: b"\xff\xfe", "got no JSON"),
         (lambda _: b"[1, 2]", "got something else"),
         (lambda state: change()(state)[:50], "cut off or damaged"),
     ],

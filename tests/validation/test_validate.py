@@ -90,7 +90,6 @@ def test_a_log_that_was_learned_from_confirms_nothing(knee: Shell) -> None:
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        ("same.parquet", "Missing option '--with'"),
         ("nothere.csv --with knee.toml", "nothere.csv: No such file"),
         ("same.parquet --with nothere.toml", "nothere.toml: No such file"),
         ("same.parquet --with other.toml", "sigmahat-results/other: "),

@@ -68,17 +68,13 @@ class Format(Generic[_Contents]):
         """Reads a file. Raises ValueError, which says what was expected and what was received."""
         path = self.path(given)
         try:
-            text = path.read_text(encoding="utf-8")
+            document: Any = json.loads(path.read_text(encoding="utf-8"))
         except OSError as error:
             hint = f"name the folder or the {self.file} that `sigmahat estimate` wrote"
             raise ValueError(f"{path}: {error.strerror}; {hint}") from error
-        except UnicodeDecodeError as error:
-            raise self._unexpected(path, "a file that is not text") from error
-        try:
-            document: Any = json.loads(text)
-        except ValueError as error:
-            damaged = f"a file that is cut off or damaged ({error})"
-            raise self._unexpected(path, damaged if self.name in text else "no JSON") from error
+        except ValueError as error:  # also for bytes that are no text
+            damaged = f"no JSON, or a file that is cut off or damaged ({error})"
+            raise self._unexpected(path, damaged) from error
         found = document.get("format") if isinstance(document, dict) else None
         if found != self.name:
             raise self._unexpected(path, f"format {found!r}" if found else "something else")
