@@ -248,25 +248,6 @@ def test_torque_constant(shell: Shell) -> None:
     assert document["parameters"]["motor"]["D_theta"] == pytest.approx(TRUE["D_theta"], rel=0.05)
 
 
-def test_without_noise_and_rounding_the_equations_hold() -> None:
-    """A motor that follows theta(t) = sin exactly, computed by hand, not by the plant."""
-    T, gamma, B, D, k = 1e-3, 50.0, 2e-5, 2e-3, 300.0
-    t = T * np.arange(8000)
-    w = 2 * np.pi * np.array([0.7, 5.1])
-    theta = np.sin(w[0] * t) + 0.05 * np.sin(w[1] * t)
-    first = w[0] * np.cos(w[0] * t) + 0.05 * w[1] * np.cos(w[1] * t)
-    second = -(w[0] ** 2) * np.sin(w[0] * t) - 0.05 * w[1] ** 2 * np.sin(w[1] * t)
-    phi = 0.01 * np.sin(3.0 * t)
-    tau = B * gamma * second + D * gamma * first - k * phi / gamma + 0.03
-    piece = Signals(theta, phi, np.ones_like(t), tau, None)
-    result = fit(equations([piece], T, gamma, Form(40.0, 100.0)))
-    assert result.value["B"] == pytest.approx(B, rel=1e-3)
-    assert result.value["D_theta"] == pytest.approx(D, rel=1e-4)
-    assert abs(result.value["tau_coulomb"]) < 1e-5
-    assert result.value["constant"] == pytest.approx(0.03, rel=1e-3)
-    assert result.value["eta[0,0]"] == pytest.approx(-k * np.max(np.abs(phi)) / gamma, rel=1e-3)
-
-
 def test_a_value_instead_of_one_that_is_not_known_stays(found: Found, path: Path) -> None:
     # GIVEN a file in which identify marked B WHEN somebody changes value and prior, but not the
     # comments, THEN the next run keeps both
@@ -356,7 +337,7 @@ def test_the_zero_is_where_the_spring_has_no_torque(path: Path) -> None:
     assert again.zero == 0 and "ports.q.zero" not in write(again, path)
 
 
-def motor(noise_of_phi: float) -> Signals:
+def motor(noise_of_phi: float, noise: float = 3e-3) -> Signals:
     """A spring of 300 N.m/rad on a motor that follows two sines, and noise above 3 Hz in phi."""
     rng = np.random.default_rng(1)
     t = T * np.arange(20000)
@@ -365,8 +346,20 @@ def motor(noise_of_phi: float) -> Signals:
     phi = 0.01 * np.sin(3.0 * t) + 0.01 * np.sin(2 * np.pi * 1.5 * t)
     acceleration = -((2 * np.pi * 0.7) ** 2) * theta
     tau = 2e-5 * 50 * acceleration + 1e-3 * 50 * velocity - 300 * phi / 50
-    tau = tau + rng.normal(0, 3e-3, len(t))
+    tau = tau + rng.normal(0, noise, len(t))
     return Signals(theta, phi + rng.normal(0, noise_of_phi, len(t)), np.ones_like(t), tau, None)
+
+
+def test_without_noise_and_rounding_the_equations_hold() -> None:
+    exact = motor(0.0, noise=0.0)
+    piece = replace(exact, tau=exact.tau + 0.03)
+    result = fit(equations([piece], T, 50.0, Form(40.0, 100.0)))
+    assert result.value["B"] == pytest.approx(2e-5, rel=1e-3)
+    assert result.value["D_theta"] == pytest.approx(1e-3, rel=1e-4)
+    assert abs(result.value["tau_coulomb"]) < 1e-5
+    assert result.value["constant"] == pytest.approx(0.03, rel=1e-3)
+    k = -50 * result.value["eta[0,0]"] / np.max(np.abs(piece.phi))
+    assert k == pytest.approx(300.0, rel=1e-3)
 
 
 def log_of(joint: Signals) -> Columns:
