@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from sigmahat.checks import motor
-from sigmahat.checks.changes import gear_of
+from sigmahat.checks.changes import distance, gear_of
 from sigmahat.checks.findings import Finding, Kind, Severity
 from sigmahat.checks.motor import LINEAR, Fitted, explains, with_all_powers
 from sigmahat.checks.relation import Relation
@@ -188,17 +188,17 @@ def _encoder_lag(seen: View, found: Fitted) -> _Delay | None:
 
 
 _AWAS = 2.3e-5  # start value of motor.B [kg.m2]
-_LARGE = 5.0
-"""Friction and delays that the equation does not model change B by less than this factor."""
-_DIFFERENT = 2.0  # a torque constant is wrong by less than this factor
-_LIKE = 3.0  # up to this factor, a ratio of inertias counts as the gear ratio
+_LARGE = math.log(5.0)
+"""Logarithm of a factor: friction and delays that the equation does not model change B by less."""
+_DIFFERENT = math.log(2.0)  # a torque constant is wrong by a smaller factor
+_LIKE = math.log(3.0)  # up to this factor, a ratio of inertias counts as the gear ratio
 
 
 def inertia(seen: View, found: Fitted) -> Iterator[Finding]:
     """A wrong inertia, or a wrong scale of the torque, if the log shows the error clearly."""
     given = float(seen.every["motor.B"])
     B = _nearest(seen, found, given) if given > 0 else None
-    if B is None or not _differs(B, given, _DIFFERENT):
+    if B is None or distance(B, given) < _DIFFERENT:
         return
     if not explains(motor.with_known(seen, found.form, "B", given), found.fit):
         return
@@ -207,14 +207,14 @@ def inertia(seen: View, found: Fitted) -> Iterator[Finding]:
     if float(seen.every["prior.B"]) >= WIDE:
         return  # the prior of B is wide, so identify will determine B
     gamma = abs(seen.gamma)
-    geared = [each for each in (gamma, 1 / gamma) if not _differs(B, each * given, _LIKE)]
+    geared = [each for each in (gamma, 1 / gamma) if distance(B, each * given) < _LIKE]
     is_given = "motor.B" in seen.configuration.parameters
-    if is_given and geared and gamma > _LIKE**2:
+    if is_given and geared and math.log(gamma) > 2 * _LIKE:
         gear = float(f"{seen.configuration.ports['tau'].gear_ratio * geared[0]:.6g}")
         kind, key, others = Kind.TORQUE_SCALE, "ports.tau.gear_ratio", [("motor.B", rounded)]
         yield Finding(kind, Severity.WRONG, key, B, unit, given, gear, others)
         return
-    is_wrong = given == _AWAS or _differs(B, given, _LARGE)
+    is_wrong = given == _AWAS or distance(B, given) > _LARGE
     severity = Severity.WRONG if is_wrong else Severity.NOTE
     constant = [("ports.tau.torque_constant", None)]
     yield Finding(Kind.INERTIA, severity, "motor.B", B, unit, given, rounded, constant)
@@ -224,14 +224,10 @@ def _nearest(seen: View, found: Fitted, given: float) -> float | None:
     """The inertia that differs least from `given`, among fits with other forms of friction and the
     ends of the interval. None if the difference is not clear, or an inertia is not above 0."""
     B, half = found.fit.value["B"], found.fit.half_width["B"]
-    if not 0 < B - half < math.inf or not _differs(B, given, _DIFFERENT):
+    if not 0 < B - half < math.inf or distance(B, given) < _DIFFERENT:
         return None
     every = [motor.with_form(seen, f).value["B"] for f in motor.variants(found.form)]
     every += [B - half, B + half]
     if not all(each > 0 for each in every):
         return None
-    return min(every, key=lambda each: abs(math.log(each / given)))
-
-
-def _differs(one: float, other: float, factor: float) -> bool:
-    return abs(math.log(one / other)) > math.log(factor)
+    return min(every, key=lambda each: distance(each, given))
