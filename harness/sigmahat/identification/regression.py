@@ -275,7 +275,7 @@ def extra(i: int) -> str:
 
 def shortest(T: float) -> int:
     """Least number of samples of a piece."""
-    return round((2 * _EDGE + 2 * _BLOCK) / T)
+    return max(round((2 * _EDGE + 2 * _BLOCK) / T), _LEAST)
 
 
 def signals_of(
@@ -292,7 +292,7 @@ def signals_of(
         return
     scale, offset = float(every["setPoint.scale"]), float(every["setPoint.offset"])
     for first, last in zip(*stretches(np.isfinite(samples.values).all(axis=1)), strict=True):
-        if last - first < max(shortest(samples.T), _LEAST):
+        if last - first < shortest(samples.T):
             continue
         part = {name: np.ascontiguousarray(each[first:last]) for name, each in columns.items()}
         nothing: Array = np.zeros(last - first)
