@@ -17,7 +17,6 @@ from sigmahat.fmi.instance import FmuError, Slave, Value, installed
 from sigmahat.identification.noise import variance
 from sigmahat.identification.quantities import WIDE
 from sigmahat.logs.configuration import PORTS, Configuration
-from sigmahat.logs.data_sheet import absent, exact
 from sigmahat.logs.log import Log, LogError
 from sigmahat.logs.replay import parameters
 
@@ -188,7 +187,7 @@ def rests_on(
     every: Mapping[str, Value],
     start: Mapping[str, Value],
 ) -> Iterator[Finding]:
-    """Assumptions that no log can verify; start are the start values of the FMU."""
+    """Assumptions about ports and motor that no log can verify; start has values of the FMU."""
     tau = configuration.ports.get("tau")
     is_current = tau is not None and tau.torque_constant is not None
     key = "ports.tau.torque_constant" if is_current else "prior.torque_gain"
@@ -204,13 +203,6 @@ def rests_on(
         if every["modality"] == "Residual" and is_other and float(every[f"prior.{name}"]) < WIDE:
             value = float(every[f"motor.{name}"])
             yield Finding(Kind.OTHER_ROBOT, Severity.RESTS_ON, f"motor.{name}", value, "")
-    if every["method"] != "FilteredRegression":
-        return
-    for name in exact(every):
-        value = float(every[f"motor.{name}"])
-        yield Finding(Kind.EXACT, Severity.RESTS_ON, f"prior.{name}", value, "", about=name)
-    for name in absent(every):
-        yield Finding(Kind.ABSENT, Severity.RESTS_ON, f"prior.{name}", 0.0, "", about=name)
 
 
 def _range(seen: View) -> Iterator[Finding]:

@@ -12,12 +12,6 @@ TITLES = {
     Severity.NOTE: "worth a look:",
     Severity.RESTS_ON: "assumptions that no log can verify:",
 }
-_ABSENT = {
-    "tau_coulomb": "Coulomb friction",
-    "load_friction": "friction by load",
-    "eccentric": "eccentricity of the encoders",
-    "delay": "delay of the torque",
-}
 
 
 def summary(checked: Checked, severities: Sequence[Severity] = tuple(Severity)) -> str:
@@ -81,7 +75,6 @@ def _what(f: Finding) -> str:
         ratio=f.measured / f.expected if f.expected else math.nan,
         gear=f"the gear ratio of {f.about}" if f.key == "motor.gamma" else "motor.gamma",
         given=f.expected,
-        effect=_ABSENT.get(f.about, f.about),
         gain=f"known to {100 * f.expected:.3g} %" if f.expected else "taken as exact",
     )
 
@@ -129,6 +122,4 @@ _SENTENCES: Mapping[Kind, str] = {
     Kind.NOISE: "the noise of the torque is {measured}, the configuration says {expected}",
     Kind.RANGE: "the log has up to {measured}, the configuration {expected} (identify sets it)",
     Kind.TORQUE_GAIN: "gain of the torque, {gain}; an error of it is an error of the stiffness",
-    Kind.EXACT: "motor.{about} = {value:.4g} is taken as exact",
-    Kind.ABSENT: "no {effect} is assumed",
 }
