@@ -61,7 +61,8 @@ def _too_short(samples: Samples, needed: float) -> str:
     """Why no stretch of a log is long enough [s], and what to do."""
     duration = len(samples.values) * samples.T
     if duration < needed:
-        return f"the log is {duration:.3g} s long, expected at least {needed:.3g} s"
+        least = f"at least {needed:.3g} s with samples {samples.T:g} s apart"
+        return f"the log is {duration:.3g} s long, expected {least}"
     gaps, _ = stretches(np.isnan(samples.values).any(axis=1))
     return (
         f"expected a stretch of {needed:.3g} s without a gap, got {len(gaps)} gaps in "
