@@ -38,14 +38,13 @@ def check(log: Log, configuration: Configuration) -> Checked:
     """
     fmu = installed("StiffnessEstimator")
     seen = view(log, configuration)
-    every = seen.every
     findings = _swapped(seen) or [_tried(seen, each) for each in _contradictions(seen)]
     with Slave(fmu, "check") as slave, slave.only_errors():
         slave.initialize(parameters(fmu, configuration))  # it refuses values that do not fit
     if not any(each.severity is Severity.WRONG for each in findings):
         # After a wrong value, these are only consequences of this value.
         findings += [*_range(seen), *_noise(seen)]
-    findings += rests_on(configuration, every, fmu.parameters({}))
+    findings += _rests_on(seen, fmu.parameters({}))
     order = list(Severity)
     findings.sort(key=lambda each: order.index(each.severity))
     return Checked(findings, len(seen.samples.values), seen.T)
@@ -159,45 +158,43 @@ def _of_motion(seen: View, recorded: Sequence[Finding]) -> Iterator[Finding]:
         if not any(key.startswith(f"ports.{each.about}.") for key in keys):
             yield each
     if "ports.q.gear_ratio" not in keys:
-        yield from gears(seen.configuration, seen.every)
+        yield from _gears(seen)
     yield from dynamics(here)
 
 
 _SAME = 0.01  # two gear ratios count as equal up to this relative difference
 
 
-def gears(configuration: Configuration, every: Mapping[str, Value]) -> Iterator[Finding]:
-    gamma = abs(float(every["motor.gamma"]))
+def _gears(seen: View) -> Iterator[Finding]:
+    gamma = abs(seen.gamma)
     for name in ("theta", "tau"):
-        port = configuration.ports.get(name)
+        port = seen.configuration.ports.get(name)
         gear = abs(port.gear_ratio) if port else 1.0
         if gear == 1 or abs(gamma / gear - 1) < _SAME:
             continue
         keys = [("motor.gamma", gear), (f"ports.{name}.gear_ratio", gamma)]
         if name == "tau":
             keys.reverse()
-        (key, expected), other = keys
-        yield Finding(
-            Kind.GEAR, Severity.WRONG, key, other[1], "", expected, expected, [other], name
-        )
+        (key, right), other = keys
+        yield Finding(Kind.GEAR, Severity.WRONG, key, other[1], "", right, right, [other], name)
 
 
-def rests_on(
-    configuration: Configuration,
-    every: Mapping[str, Value],
-    start: Mapping[str, Value],
-) -> Iterator[Finding]:
-    """Assumptions about ports and motor that no log can verify; start has values of the FMU."""
-    tau = configuration.ports.get("tau")
+def _rests_on(seen: View, start: Mapping[str, Value]) -> Iterator[Finding]:
+    """Assumptions about ports and motor that no log can verify.
+
+    start  start values of the FMU
+    """
+    every, given = seen.every, seen.configuration.ports
+    tau = given.get("tau")
     is_current = tau is not None and tau.torque_constant is not None
     key = "ports.tau.torque_constant" if is_current else "prior.torque_gain"
     gain = float(every["prior.torque_gain"])
     yield Finding(Kind.TORQUE_GAIN, Severity.RESTS_ON, key, gain, "", gain)
-    ports = {name: configuration.ports.get(name) for name in ("theta", "q")}
-    units = [f"{name} in {port.unit or PORTS[name]}" for name, port in ports.items() if port]
-    if len(units) == 2:
-        about = " and ".join(units)
-        yield Finding(Kind.UNIT, Severity.RESTS_ON, "ports.theta.unit", 1.0, "", about=about)
+    if {"theta", "q"} <= given.keys():
+        theta, q = (f"{name} in {given[name].unit or PORTS[name]}" for name in ("theta", "q"))
+        yield Finding(
+            Kind.UNIT, Severity.RESTS_ON, "ports.theta.unit", 1.0, "", about=f"{theta} and {q}"
+        )
     for name in ("B", "D_theta"):
         is_other = every[f"motor.{name}"] == start[f"motor.{name}"]
         if every["modality"] == "Residual" and is_other and float(every[f"prior.{name}"]) < WIDE:
