@@ -72,7 +72,7 @@ def _extremes(x: NDArray[np.float32], bucket: int) -> NDArray[np.float32]:
 Band = tuple[NDArray[Any], NDArray[Any]]
 _TIME = plain_axis("t")
 _WIDE = 3.5  # line width of the truth, which stays visible under an estimate
-SIDES = ("", "_1", "_2")
+_SIDES = ("", "_1", "_2")
 """Suffixes of variables: of the joint, or of the sides of an antagonistic pair."""
 
 
@@ -111,7 +111,7 @@ def stiffness_panels(
 
     estimates  by label: names of the signals by variable, sigma, sigma_1, sigma_2
     """
-    for side in SIDES:
+    for side in _SIDES:
         labels = [label for label, names in estimates.items() if f"sigma{side}" in names]
         if not labels:
             continue
@@ -124,7 +124,7 @@ def stiffness_panels(
         truth = [] if true is None else [Curve("true", TRUE, reduced.t, true, width=_WIDE)]
         scale = lines[0].y[len(lines[0].y) // 20 :] if true is None else true
         yield Panel(
-            f"Stiffness{of_side(side)}",
+            f"Stiffness{_of_side(side)}",
             _TIME,
             plain_axis("sigma"),
             [*truth, *lines],
@@ -133,7 +133,7 @@ def stiffness_panels(
         )
         if true is not None:
             yield Panel(
-                f"Relative error of the stiffness{of_side(side)}",
+                f"Relative error of the stiffness{_of_side(side)}",
                 _TIME,
                 "|error| [%]",
                 [
@@ -167,7 +167,7 @@ def quantity_panels(reduced: Reduced, estimator: str) -> Iterator[Panel]:
         for side in _sides(labels, reduced):
             curves = _curves(labels, side, reduced)
             if curves:
-                full = f"{title}{of_side(side)}{whose}"
+                full = f"{title}{_of_side(side)}{whose}"
                 # A spike, for example after a gap, does not change them.
                 low, high = zip(*(limits(curve.y) for curve in curves), strict=True)
                 y_range = with_margin(min(low), max(high), 0.06)
@@ -186,13 +186,13 @@ def sampling(reduced: Reduced) -> list[str]:
     ]
 
 
-def of_side(side: str) -> str:
+def _of_side(side: str) -> str:
     return f" of side {side[1:]}" if side else ""
 
 
 def _sides(variables: Iterable[str], reduced: Reduced) -> Iterable[str]:
     """The sides with a recorded signal, in the order of the signals."""
-    of_sides = ((each, side) for each in variables if "{}" in each for side in SIDES)
+    of_sides = ((each, side) for each in variables if "{}" in each for side in _SIDES)
     return dict.fromkeys(side for each, side in of_sides if each.format(side) in reduced.signals)
 
 

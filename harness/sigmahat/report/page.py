@@ -2,24 +2,20 @@
 
 import re
 from base64 import b64encode
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import Any
 
-import numpy as np
 import pyarrow as pa
 from bokeh.embed import components
 from bokeh.resources import Resources
-from numpy.typing import NDArray
 
 from sigmahat.files.tables import read_csv
 from sigmahat.files.templates import environment
 from sigmahat.logs.estimate import JOINTS
-from sigmahat.logs.panels import SIDES, of_side, quantity_panels, reduce, sampling, stiffness_panels
+from sigmahat.logs.panels import quantity_panels, reduce, sampling, stiffness_panels
 from sigmahat.paper.reproduction import SEEDS, TABLE, TIME, read_result_files
-from sigmahat.plotting.panels import COLORS, TRUE, Curve, Kind, Panel
-from sigmahat.plotting.style import PAGE, QUANTITIES, plain_axis
+from sigmahat.plotting.style import PAGE
 from sigmahat.report.contents import Contents, TextTable, of_file
 from sigmahat.report.from_log import from_joints, from_log
 from sigmahat.report.plots import plots
@@ -61,54 +57,9 @@ def from_reproduction(folder: Path) -> Contents:
         [f"{len(t)} samples{of_seeds}"],
         [indices],
         [*stiffness_panels(reduced, estimates), *quantities],
-        answer=list(over_deformation(series[main], main)),
         notes=sampling(reduced),
         every=reduced.every if reduced.bucket > 1 else None,
     )
-
-
-_LAST = 1 / 3  # fraction of the run that is shown: at the end, an estimate changes little
-_COUNT = 100  # number of dots of the estimate: few, so that the truth is visible between the dots
-
-Signals = Mapping[str, NDArray[Any]]
-
-
-def over_deformation(signals: Signals, estimator: str) -> Iterator[Panel]:
-    """Two panels for each transmission with a fixed spring; separate panels for sides of a pair.
-
-    No panels without the truth. signals  of the plant and of one estimator
-    """
-    for side in SIDES:
-        needed = [f"{name}{side}" for name in ("phi", "tau_e", "sigma", "setPoint")]
-        needed += [f"plant.{name}" for name in needed[:3]]
-        if not all(name in signals for name in needed):
-            continue
-        late = slice(int(len(signals["t"]) * (1 - _LAST)), None)
-        own = {name: signals[name][late] for name in needed}
-        if np.ptp(own[f"setPoint{side}"]) > 0:
-            continue
-        for name in ("tau_e", "sigma"):
-            words = QUANTITIES[name].words.capitalize()
-            title = f"{words} against deformation{of_side(side)}, {estimator}"
-            axes, curves = (plain_axis("phi"), plain_axis(name)), list(_curves(own, name, side))
-            caption = f"last {_LAST * float(signals['t'][-1]):.3g} s"
-            yield Panel(title, *axes, curves, linked=False, caption=caption)
-
-
-def _curves(signals: Signals, name: str, side: str) -> Iterator[Curve]:
-    """The truth as a line, and the estimate as dots on it or beside it."""
-    phi, true = signals[f"plant.phi{side}"], signals[f"plant.{name}{side}"]
-    every = _few(phi, 10 * _COUNT)
-    yield Curve("true", TRUE, phi[every], true[every], width=3.5)
-    phi, value = signals[f"phi{side}"], signals[f"{name}{side}"]
-    few = _few(phi, _COUNT)
-    yield Curve("estimate", COLORS[0], phi[few], value[few], Kind.POINTS)
-
-
-def _few(phi: NDArray[Any], count: int) -> NDArray[np.intp]:
-    """About count samples, in the order of the deformation."""
-    few: NDArray[np.intp] = np.argsort(phi)[:: max(1, len(phi) // count)]
-    return few
 
 
 def from_comparison(name: str, folder: Path) -> Contents:
