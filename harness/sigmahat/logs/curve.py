@@ -98,6 +98,12 @@ def spread(first: int, count: int, stride: int) -> NDArray[np.intp]:
     return found[(found >= 0) & (found < count)]
 
 
+def extremes(values: NDArray[Any], bucket: int) -> NDArray[Any]:
+    """Minimum and maximum of each bucket of values but nan, one behind the other."""
+    starts = np.arange(0, len(values), bucket)
+    return np.column_stack([f.reduceat(values, starts) for f in (np.fmin, np.fmax)]).ravel()
+
+
 POINTS = "estimate.points.csv"  # name of the file in the folder of results
 _UNITS = {"setPoint": "1", "phi": "rad", "tau_e": "N.m"}
 

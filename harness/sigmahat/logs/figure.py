@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from sigmahat.logs.curve import Answer
+from sigmahat.logs.curve import Answer, extremes
 from sigmahat.logs.job import DRAWN, Replay
 from sigmahat.logs.log import Array
 from sigmahat.logs.panels import Reduced, curve_panels, quantity_panels, stiffness_panels
@@ -50,21 +50,13 @@ def _over_time(replay: Replay) -> list[Panel]:
         del signals["sigma_std"]  # the method gives no interval
     if replay.every["modality"] == "Sensor":
         del signals["tau_e_residual"]
-        signals["plant.tau_e_measured"] = _sensor(replay)
+        sensor = samples.values[:, list(samples.names).index("tau_e_sensor")]
+        signals["plant.tau_e_measured"] = extremes(sensor, statistics.bucket)
     step = samples.T * statistics.bucket
-    t = np.repeat(step * np.arange(len(signals["sigma"]), dtype=np.float64), 2)
-    pairs = {name: ends.ravel() for name, ends in signals.items()}
-    reduced = Reduced(t, pairs, statistics.bucket, (t[0], t[-1]))
+    t = np.repeat(step * np.arange(len(signals["sigma"]) // 2, dtype=np.float64), 2)
+    reduced = Reduced(t, signals, statistics.bucket)
     stiffness = stiffness_panels(reduced, {"estimate": {"sigma": "sigma"}})
     return [*stiffness, *quantity_panels(reduced, "")]
-
-
-def _sensor(replay: Replay) -> Array:
-    """Torque of the sensor in the form of ReplayStatistics.ends."""
-    samples = replay.samples
-    values = samples.values[:, list(samples.names).index("tau_e_sensor")]
-    starts = np.arange(0, len(values), replay.statistics.bucket)
-    return np.column_stack([f.reduceat(values, starts) for f in (np.fmin, np.fmax)])
 
 
 def _skipped(samples: Samples) -> Array:

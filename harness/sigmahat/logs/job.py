@@ -17,6 +17,7 @@ from sigmahat.logs.curve import (
     NEEDED,
     Answer,
     curve,
+    extremes,
     points_of,
     restarts,
     shown_points,
@@ -68,10 +69,8 @@ class ReplayStatistics:
     def add(self, outputs: Mapping[str, np.ndarray[Any, Any]]) -> None:
         """Adds the outputs of the next ticks."""
         count = len(outputs["valid"])
-        starts = np.arange(0, count, self.bucket)
         for name in DRAWN:
-            ends = [each.reduceat(outputs[name], starts) for each in (np.minimum, np.maximum)]
-            self._parts[name].append(np.column_stack(ends))
+            self._parts[name].append(extremes(outputs[name], self.bucket))
         first = max(0, self._half - self.ticks)
         if first < count:
             valid = outputs["valid"][first:]
@@ -92,7 +91,7 @@ class ReplayStatistics:
             self.used[name] = _wider(self.used.get(name, _NOTHING), outputs[name][learning])
 
     def ends(self, name: str) -> Array:
-        """Minimum and maximum in each interval, [size: intervals x 2]."""
+        """Minimum and maximum in each interval, one behind the other [size: 2 intervals]."""
         return np.concatenate(self._parts[name])
 
     @property

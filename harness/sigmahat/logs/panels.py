@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from sigmahat.joint import curve as joint
 from sigmahat.joint.curve import NORMAL_95
-from sigmahat.logs.curve import MeasuredPoints
+from sigmahat.logs.curve import MeasuredPoints, extremes
 from sigmahat.plotting.panels import COLORS, TRUE, Curve, Panel
 from sigmahat.plotting.style import QUANTITIES, around, limits, plain_axis, with_margin
 
@@ -25,48 +25,22 @@ class Reduced:
     signals: Mapping[str, NDArray[Any]]  # signals, with the shape of t
     bucket: int
     """Number of samples from which minimum and maximum are kept; 1: every sample is kept."""
-    every: tuple[float, float]  # between these times every sample is kept
 
 
 def reduce(t: NDArray[Any], signals: Mapping[str, NDArray[Any]], budget: int = BUDGET) -> Reduced:
     """Keeps at most about budget values of all signals, and 20000 of each.
 
-    Half of the kept values are all samples around the middle, where single counts of an encoder
-    show. The other half are minimum and maximum of each bucket, in the order of time.
+    Of a longer signal, the minimum and the maximum of each bucket are kept, at its first time.
     t and the signals have the same shape (N,), N >= 1.
     """
     rows = min(max(budget // max(len(signals), 1), 8), _MOST)
     t = np.asarray(t, dtype=np.float64)
-    if len(t) <= rows:
-        whole = {name: np.asarray(s, dtype=np.float32) for name, s in signals.items()}
-        return Reduced(t, whole, 1, (float(t[0]), float(t[-1])))
-    first = (len(t) - rows // 2) // 2
-    last = first + rows // 2
-    bucket = -(-(len(t) - rows // 2) * 2 // (rows - rows // 2))
-    parts = [np.arange(0, first, bucket), np.arange(last, len(t), bucket)]
-    times = [_twice(t, starts) for starts in parts]
+    bucket = 1 if len(t) <= rows else -(-2 * len(t) // rows)
     reduced = {}
-    for name, values in signals.items():
-        x = np.asarray(values, dtype=np.float32)
-        before, after = _extremes(x[:first], bucket), _extremes(x[last:], bucket)
-        reduced[name] = np.concatenate([before, x[first:last], after])
-    common = np.concatenate([times[0], t[first:last], times[1]])
-    return Reduced(common, reduced, bucket, (float(t[first]), float(t[last - 1])))
-
-
-def _twice(t: NDArray[np.float64], starts: NDArray[np.intp]) -> NDArray[np.float64]:
-    """Two times in each bucket: its start, and half way to the next."""
-    ends = np.append(t[starts[1:]], t[min(starts[-1] + 1, len(t) - 1)]) if len(starts) else starts
-    return np.column_stack([t[starts], (t[starts] + ends) / 2]).ravel()
-
-
-def _extremes(x: NDArray[np.float32], bucket: int) -> NDArray[np.float32]:
-    """Least and greatest of each bucket, the earlier of the two first."""
-    table = np.pad(x, (0, -len(x) % bucket), constant_values=np.nan).reshape(-1, bucket)
-    low = np.where(np.isnan(table), np.inf, table).argmin(axis=1)
-    high = np.where(np.isnan(table), -np.inf, table).argmax(axis=1)
-    order = np.column_stack([np.minimum(low, high), np.maximum(low, high)])
-    return np.take_along_axis(table, order, axis=1).ravel()
+    for name, signal in signals.items():  # one after the other, for the memory
+        values = np.asarray(signal, dtype=np.float32)
+        reduced[name] = values if bucket == 1 else extremes(values, bucket)
+    return Reduced(t if bucket == 1 else np.repeat(t[::bucket], 2), reduced, bucket)
 
 
 Band = tuple[NDArray[Any], NDArray[Any]]
@@ -178,12 +152,7 @@ def sampling(reduced: Reduced) -> list[str]:
     """The samples that the plots show, in words."""
     if reduced.bucket == 1:
         return ["Every sample is in the plots: zoom in until single counts of the encoders show."]
-    first, last = reduced.every
-    return [
-        f"Every sample is in the plots from {first:.6g} s to {last:.6g} s, the shaded part: zoom in"
-        f" there until single counts of the encoders show. Elsewhere, plots have the least and the "
-        f"greatest of every {reduced.bucket} samples."
-    ]
+    return [f"The plots have the least and the greatest of every {reduced.bucket} samples."]
 
 
 def _of_side(side: str) -> str:

@@ -129,7 +129,7 @@ class ResultPanel:
         text = "\n".join(curve_text(curve, self._setup.get("rls.n") is not None))
         return [
             words(f"{legend}<small>{escape(panels[0].caption)}</small>", overflow_x="auto"),
-            in_grid(plots(panels, None), "30rem"),
+            in_grid(plots(panels), "30rem"),
             words(f"<pre>{escape(text)}</pre>", overflow_x="auto"),
         ]
 

@@ -37,8 +37,6 @@ class Contents:
     answer: Sequence[Panel] = ()  # panels above all other panels, and above the tables
     notes: Sequence[str] = ()  # sentences about the processing of the samples
     pictures: Sequence[Path] = ()  # PNG files
-    every: tuple[float, float] | None = None
-    """Times between which every sample is drawn [s]; None: everywhere."""
     marks: Sequence[float] = ()  # times of dotted lines in the panels over time [s]
 
 

@@ -74,7 +74,6 @@ def from_log(folder: Path) -> Contents:
         headline=headline(curve, sheet.doubt),
         answer=list(curve_panels(curve, points)),
         notes=[*log.notes, *sampling(reduced)],
-        every=reduced.every if reduced.bucket > 1 else None,
         marks=marks,
     )
 

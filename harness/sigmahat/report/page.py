@@ -58,7 +58,6 @@ def from_reproduction(folder: Path) -> Contents:
         [indices],
         [*stiffness_panels(reduced, estimates), *quantities],
         notes=sampling(reduced),
-        every=reduced.every if reduced.bucket > 1 else None,
     )
 
 
@@ -137,7 +136,7 @@ def report(folder: Path) -> str:
 
 def _page(contents: Contents) -> str:
     panels, first = [*contents.answer, *contents.panels], len(contents.answer)
-    script, divs = components(plots(panels, contents.every, contents.marks)) if panels else ("", [])
+    script, divs = components(plots(panels, contents.marks)) if panels else ("", [])
     shown = list(zip(range(len(panels)), panels, divs, strict=True))
     page = environment(Path(__file__).parent).get_template("page.html")
     return page.render(

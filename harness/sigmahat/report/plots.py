@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 from bokeh.models import (
-    BoxAnnotation,
     BoxZoomTool,
     ColumnDataSource,
     PanTool,
@@ -29,10 +28,8 @@ from sigmahat.plotting.style import around
 _HEIGHT, _GREY = 300, "#888888"
 
 
-def plots(
-    panels: Sequence[Panel], every: tuple[float, float] | None, marks: Sequence[float] = ()
-) -> list[figure]:
-    """The plots of panels; linked plots have `every` shaded, and dotted lines at `marks`.
+def plots(panels: Sequence[Panel], marks: Sequence[float] = ()) -> list[figure]:
+    """The plots of panels; linked plots have dotted lines at `marks`.
 
     All models of curve j of panel i have the name trace-i-j: page.html switches them by it.
     """
@@ -43,9 +40,6 @@ def plots(
     made = []
     for i, panel in enumerate(panels):
         plot = _figure(panel, linked)
-        if panel.linked and every is not None:
-            low, high = every
-            plot.add_layout(BoxAnnotation(left=low, right=high, fill_color=_GREY, fill_alpha=0.12))
         for mark in marks if panel.linked else ():
             style = {"line_dash": "dotted", "line_color": _GREY}
             plot.add_layout(Span(location=mark, dimension="height", **style))
