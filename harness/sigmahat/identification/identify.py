@@ -235,7 +235,7 @@ def _best_V_a(
     wide = min(2.5 * f_0, _V_A_HIGHEST / samples.T)
     reference = np.gradient(low_pass(theta, wide, samples.T), samples.T)
     settled = slice(len(theta) // 10, -len(theta) // 10)
-    only = Samples(samples.T, ["theta"], theta[:, None], None, ())
+    only = Samples(samples.T, ["theta"], theta[:, None])
     errors: dict[float, float] = {}
     for V_a in _V_A:
         with Slave(fmu, "filter") as slave:

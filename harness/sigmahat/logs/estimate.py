@@ -168,8 +168,14 @@ def _written(
     write_curve(answered.curve, folder / CURVE)
     write_points(answered.points, folder / POINTS)
     notes = [*result.notes, *(each.in_words for each in result.changes)]
-    about = (str(result.log), result.ticks, result.skipped, result.T, notes, findings)
-    write_json(asdict(Replayed(REPLAYED.name, REPLAYED.version, *about)), folder / REPLAYED.file)
+    replayed = Replayed(
+        *(REPLAYED.name, REPLAYED.version, str(result.log), result.ticks, result.skipped, result.T),
+        changes=[each.t for each in result.changes],
+        doubt=replay.statistics.doubts,
+        notes=notes,
+        findings=findings,
+    )
+    write_json(asdict(replayed), folder / REPLAYED.file)
     _save_figure(replay, answered, folder)
     return result
 

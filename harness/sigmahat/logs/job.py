@@ -123,11 +123,8 @@ class StiffnessChange:
         return f"the stiffness changed by {100 * self.relative:+.0f} % at {self.t:.4g} s"
 
 
-def detected(
-    age: NDArray[np.float64],
-    confident: NDArray[np.bool_],
-    before: float = -1.0,
-    followed: bool = True,
+def _detected(
+    age: NDArray[np.float64], confident: NDArray[np.bool_], before: float, followed: bool
 ) -> NDArray[np.intp]:
     """Indices at which a change was detected: where the output change_age starts again.
 
@@ -163,7 +160,7 @@ class Changes:
         age = outputs["change_age"]
         eta = np.column_stack([outputs[name] for name in self.names])
         confident = np.flatnonzero(outputs["confident"])
-        new = detected(age, outputs["confident"], self._age, self._followed)
+        new = _detected(age, outputs["confident"], self._age, self._followed)
         for begin, end in pairwise([-1, *new.tolist(), len(age)]):
             if begin >= 0:
                 self._at = float(outputs["phi"][begin]), float(outputs["setPoint"][begin])

@@ -11,7 +11,6 @@ columns of the log are unchanged. Times are float64, because times of hours need
 from __future__ import annotations
 
 import json
-from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import AbstractContextManager, contextmanager
@@ -42,7 +41,7 @@ _PREFIX = "estimate."
 _REPEATED = 2  # from this number of rows per distinct value on, a dictionary is shorter
 _TIME = "t"
 _TIMES = (_TIME, "change_age")
-DOUBT = "doubt"  # the output that is text
+_DOUBT = "doubt"  # the output that is text
 
 
 class EstimateWriter(AbstractContextManager["EstimateWriter"]):
@@ -55,8 +54,7 @@ class EstimateWriter(AbstractContextManager["EstimateWriter"]):
         self._units = {_TIME: "s", **units}
         self._tick_of_row = samples.tick_of_row
         self._T = samples.T
-        rows = len(samples.values if samples.tick_of_row is None else samples.tick_of_row)
-        names = [name for name, n in log.columns.items() if n == rows]
+        names = [name for name, n in log.columns.items() if n == len(samples.tick_of_row)]
         self._rows = _Rows(log.batches(names, _ROWS))
         self._row = self._tick = 0
         self._writer: Any = None
@@ -66,12 +64,9 @@ class EstimateWriter(AbstractContextManager["EstimateWriter"]):
     def add(self, outputs: Mapping[str, NDArray[Any]]) -> None:
         """Writes the rows of the next ticks, with the outputs of these ticks."""
         ticks = len(next(iter(outputs.values())))
-        end = self._tick + ticks
-        take: slice | NDArray[np.int32] = slice(None)  # as usual: nothing has to be copied
-        if self._tick_of_row is not None:
-            # An int32 as in the array: for another type, the whole array would be converted.
-            end = int(np.searchsorted(self._tick_of_row, np.int32(end)))
-            take = self._tick_of_row[self._row : end] - self._tick
+        # An int32 as in the array: for another type, the whole array would be converted.
+        end = int(np.searchsorted(self._tick_of_row, np.int32(self._tick + ticks)))
+        take = self._tick_of_row[self._row : end] - self._tick
         table = self._rows.take(end - self._row)
         times = self._T * np.arange(self._tick, self._tick + ticks)
         for name, values in {_TIME: times, **outputs}.items():
@@ -219,9 +214,9 @@ class EstimateTable(Mapping[str, NDArray[np.float64]]):
         names = [tables.name_and_unit(title.removeprefix(_PREFIX)) for title in titles]
         self.units = dict(names)  # unit of each output, None for flags
         self._titles = dict(zip(self.units, titles, strict=True))
-        if not self.units.keys() >= {*_TIMES, "sigma", "valid", DOUBT}:
+        if not self.units.keys() >= {*_TIMES, "sigma", "valid", _DOUBT}:
             raise LogError(f"{path}: no table of `sigmahat estimate`; run it again")
-        self._doubt = self._titles.pop(DOUBT)
+        del self._titles[_DOUBT]
 
     def __getitem__(self, name: str) -> NDArray[np.float64]:
         return self._log.read(self._titles[name])
@@ -238,17 +233,6 @@ class EstimateTable(Mapping[str, NDArray[np.float64]]):
         rest._titles = {n: title for n, title in self._titles.items() if n not in names}
         return rest
 
-    def doubts(self) -> Counter[str]:
-        """Number of rows in the second half of the log for each value of the output `doubt`."""
-        found: Counter[str] = Counter()
-        left = self._log.samples(self._doubt) // 2  # of the first half
-        for batch in self._log.batches([self._doubt], _ROWS):
-            later = batch.column(0).slice(min(left, len(batch)))
-            left -= len(batch) - len(later)
-            counted = later.value_counts().to_pylist()
-            found.update({each["values"]: each["counts"] for each in counted})
-        return found
-
 
 @dataclass(frozen=True)
 class Replayed:
@@ -262,9 +246,12 @@ class Replayed:
     ticks: int  # number of ticks of the estimator in the log
     skipped: int  # ticks without an estimate: a measurement was missing
     T: float  # time between ticks [s]
+    changes: list[float]  # times at which the stiffness changed [s]
+    doubt: dict[Text, float]
+    """Fraction of the ticks in the second half, by item of the output `doubt`."""
     notes: list[Text]  # sentences about the processing of the samples of the log
     findings: list[tuple[Text, Text]] | None = None
     """Severity and sentence of each finding of the checks; None without checks."""
 
 
-REPLAYED = Format("estimate.json", "sigmahat estimate", 1, Replayed)  # format of the file
+REPLAYED = Format("estimate.json", "sigmahat estimate", 2, Replayed)  # format of the file

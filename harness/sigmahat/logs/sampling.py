@@ -11,7 +11,7 @@ column with a sample for nearly every tick is only interpolated if a longest gap
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -37,9 +37,9 @@ class Samples:
     T: float  # time between ticks [s]
     names: Sequence[str]  # ports
     values: Array  # [size: ticks x ports], nan where there is no value
-    tick_of_row: NDArray[np.int32] | None
-    """Last tick at or before each row of the log; None as usual: row k is tick k."""
-    notes: Sequence[str]  # what had to be done to the samples, in sentences
+    tick_of_row: NDArray[np.int32] = field(default_factory=lambda: np.empty(0, np.int32))
+    """Last tick at or before each row of the log, if there is a log."""
+    notes: Sequence[str] = ()  # what had to be done to the samples, in sentences
 
 
 _Asked = tuple[dict[str, Port], Time, float]
@@ -113,10 +113,8 @@ def _sample(log: Log, configuration: Configuration, T: float) -> Samples:
     return Samples(T, tuple(configuration.ports), values, _tick_of(rows, T, ticks), notes)
 
 
-def _tick_of(rows: Array, T: float, ticks: int) -> NDArray[np.int32] | None:
+def _tick_of(rows: Array, T: float, ticks: int) -> NDArray[np.int32]:
     """As tick_of_row of Samples; times since the first tick [s], nan where unknown."""
-    if len(rows) == ticks and _one_for_each_tick(rows, T):
-        return None
     tick = rows / T
     tick += AT_TICK
     np.floor(tick, out=tick)

@@ -1,7 +1,6 @@
 """A report from the files of `sigmahat estimate`."""
 
-from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
@@ -22,7 +21,6 @@ from sigmahat.joint.curve import (
 from sigmahat.joint.sheet import FORMAT, Sheet
 from sigmahat.logs.curve import POINTS, MeasuredPoints, read_points
 from sigmahat.logs.estimate import JOINTS
-from sigmahat.logs.job import detected
 from sigmahat.logs.output import REPLAYED, EstimateTable, Replayed
 from sigmahat.logs.panels import curve_panels, quantity_panels, reduce, sampling, stiffness_panels
 from sigmahat.plotting.style import plain_text, plain_title, plain_unit
@@ -47,13 +45,12 @@ def from_log(folder: Path) -> Contents:
     bandwidth = float(sheet.start_values["regression.bandwidth"])
     of_model = residuals(t, drawn, used, bandwidth) if regression else None
     reduced = reduce(t, drawn)
-    marks = t[detected(signals["change_age"], signals["confident"].astype(bool))].tolist()
     tables = [
         *([curve_table(curve)] if curve.branches else []),
         found_table(sheet),
         *([] if log.findings is None else [findings_table(log.findings)]),
         _estimates(signals, used),
-        _doubts(table.doubts()),
+        _doubts(log.doubt),
         estimator_table(sheet),
     ]
     return Contents(
@@ -63,7 +60,7 @@ def from_log(folder: Path) -> Contents:
             # A gap in the log has ticks, but no rows.
             f"{len(used)} rows over {t[-1] - t[0]:.6g} s; "
             f"{log.skipped} of {log.ticks} ticks skipped, a tick every {log.T:g} s",
-            *(["Dotted lines: changes of the stiffness, see Samples."] if marks else []),
+            *(["Dotted lines: changes of the stiffness, see Samples."] if log.changes else []),
         ],
         tables,
         [
@@ -74,7 +71,7 @@ def from_log(folder: Path) -> Contents:
         headline=headline(curve, sheet.doubt),
         answer=list(curve_panels(curve, points)),
         notes=[*log.notes, *sampling(reduced)],
-        marks=marks,
+        marks=log.changes,
     )
 
 
@@ -132,11 +129,10 @@ def _estimates(signals: EstimateTable, used: NDArray[np.bool_]) -> TextTable:
     return TextTable("Outputs of the estimator", head, rows, note=note, folded=True)
 
 
-def _doubts(doubts: Counter[str]) -> TextTable:
+def _doubts(doubts: Mapping[str, float]) -> TextTable:
     """How often the estimator was confident, and why not, in the second half."""
-    rows = doubts.total()
-    shares = [[item, f"{100 * count / rows:.3g}"] for item, count in doubts.most_common()]
-    head = ["why not confident", "fraction of rows [%] *"]
+    shares = [[item, f"{100 * share:.3g}"] for item, share in doubts.items()]
+    head = ["why not confident", "fraction of the ticks [%] *"]
     note = "* in the second half; None: it was confident"
     return TextTable("Doubt", head, shares, note=note)
 

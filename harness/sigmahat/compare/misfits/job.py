@@ -165,7 +165,7 @@ def estimate(experiment: Experiment, motion: Motion, torque_gain: float) -> Scor
     """The score of FilteredRegression on the samples of a run; torque_gain as for settings()."""
     names = list(motion.measured)
     values = np.column_stack(list(motion.measured.values()))
-    samples = Samples(experiment.T, names, values, None, ())
+    samples = Samples(experiment.T, names, values)
     with Slave(installed(ESTIMATOR), "FilteredRegression") as slave:
         slave.initialize(settings(experiment, torque_gain))
         (found,) = play(slave, samples, len(values))
