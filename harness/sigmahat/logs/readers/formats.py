@@ -3,6 +3,9 @@
 from pathlib import Path
 
 from sigmahat.logs.log import Log, LogError, check_columns
+from sigmahat.logs.readers.bags import read_bag
+from sigmahat.logs.readers.matrices import read_hdf5, read_mat
+from sigmahat.logs.readers.tables import CsvLog, ParquetLog
 
 _PACKED = (
     (b"\x1f\x8b", "compressed with gzip", "unpack it: gunzip --keep {}"),
@@ -29,8 +32,6 @@ def open_log(path: str | Path) -> Log:
     if path.is_dir():
         if not (path / "metadata.yaml").is_file():
             raise LogError(f"{path}: a folder without metadata.yaml is no ROS 2 bag; name a file")
-        from sigmahat.logs.readers.bags import read_bag
-
         return read_bag(path)
     if path.exists() and not path.is_file():  # reading a pipe would wait
         raise LogError(f"{path}: expected a file, got a pipe or a device; name a log")
@@ -50,20 +51,12 @@ def open_log(path: str | Path) -> Log:
 
 def _reader(path: Path, head: bytes) -> Log:
     if head.startswith(b"PAR1"):
-        from sigmahat.logs.readers.tables import ParquetLog
-
         return ParquetLog(path)
     if b"\x89HDF\r\n\x1a\n" in (head[:8], head[512:520]):
-        from sigmahat.logs.readers.matrices import read_hdf5
-
         return read_hdf5(path)
     if head.startswith(b"MATLAB 5.0 MAT-file"):
-        from sigmahat.logs.readers.matrices import read_mat
-
         return read_mat(path)
     if head.startswith((b"\x89MCAP0\r\n", b"SQLite format 3\0")):
-        from sigmahat.logs.readers.bags import read_bag
-
         return read_bag(path)
     for begin, what, then in _PACKED:
         if head.startswith(begin):
@@ -72,6 +65,4 @@ def _reader(path: Path, head: bytes) -> Log:
         raise LogError(
             f"{path}: unknown format; expected CSV, Parquet, MAT, HDF5, MCAP or a ROS 2 bag"
         )
-    from sigmahat.logs.readers.tables import CsvLog
-
     return CsvLog(path)
