@@ -145,9 +145,8 @@ def test_why_and_how_often_the_estimate_is_not_confident(shell: Shell) -> None:
     text = shell.run("estimate log.parquet --out out")
     assert len(text.splitlines()) <= 30
     assert re.search(r"not confident +\S+ % of the time \(\w+ \S+ %", text)
-    by_gain = f"1 % of it changes sigma by {result['sigma_per_gain']:.3g} %"
-    gain = f"known to 1 % (prior.torque_gain); {by_gain}"
-    for line in (gain, "motor.B = 1.84e-05 kg.m2, exactly (prior.B = 0)", "range.phi = 0.3 rad"):
+    by_gain = f"1 % of it changes the stiffness by {result['sigma_per_gain']:.3g} %"
+    for line in (f"known to 1 %; {by_gain}", "prior.B: motor.B = 1.84e-05 is taken as exact"):
         assert line in text
 
 

@@ -1,12 +1,11 @@
 """Findings as sentences for people."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 from sigmahat.checks.findings import Checked, Finding, Kind, Proposal, Severity
+from sigmahat.logs.data_sheet import WORDS
 
-IN_LOG = (Severity.WRONG, Severity.NOTE)
-"""Findings that the log shows. The commands that estimate print their own assumptions."""
 TITLES = {
     Severity.WRONG: "checked, likely wrong in the configuration:",
     Severity.NOTE: "worth a look:",
@@ -14,11 +13,11 @@ TITLES = {
 }
 
 
-def summary(checked: Checked, severities: Sequence[Severity] = tuple(Severity)) -> str:
-    """One screen, with findings of these severities."""
+def summary(checked: Checked) -> str:
+    """All findings, on one screen."""
     lines = [] if checked.is_wrong else [nothing_found(checked)]
     for severity, title in TITLES.items():
-        if severity in severities and (found := checked.of(severity)):
+        if found := checked.of(severity):
             lines += [title, *(f"  {sentence(each)}" for each in found)]
     return "\n".join(lines)
 
@@ -75,6 +74,7 @@ def _what(f: Finding) -> str:
         ratio=f.measured / f.expected if f.expected else math.nan,
         gear=f"the gear ratio of {f.about}" if f.key == "motor.gamma" else "motor.gamma",
         given=f.expected,
+        effect=WORDS.get(f.about, ""),
         gain=f"known to {100 * f.expected:.3g} %" if f.expected else "taken as exact",
     )
 

@@ -156,7 +156,6 @@ def identify(log: Path, config: Path, joint: str, torque_constant: bool, dry_run
     import tomlkit
 
     from sigmahat.checks.findings import as_dict as checks_as_dict
-    from sigmahat.checks.text import IN_LOG
     from sigmahat.checks.text import summary as of_checks
     from sigmahat.files.output import write_whole
     from sigmahat.identification.quantities import as_dict, summary
@@ -173,7 +172,7 @@ def identify(log: Path, config: Path, joint: str, torque_constant: bool, dry_run
             texts[name] = f"{log}\n{summary(found)}"
             if written:
                 texts[name] += f"\n\nWritten into {config}: {', '.join(written)}"
-            texts[name] += f"\n\n{of_checks(checked, IN_LOG)}"
+            texts[name] += f"\n\n{of_checks(checked)}"
             values[name] = {**as_dict(found), "written": written, "checks": checks_as_dict(checked)}
         if not dry_run:
             write_whole(tomlkit.dumps(document), config)

@@ -54,7 +54,6 @@ def estimate(
     With several joints, each joint has its own folder, and a row in joints.csv.
     """
     from sigmahat.checks.findings import as_dict
-    from sigmahat.checks.text import IN_LOG
     from sigmahat.checks.text import summary as of_checks
     from sigmahat.files.tables import aligned
     from sigmahat.logs.estimate import summary, write_joints
@@ -70,7 +69,7 @@ def estimate(
     where = f"Table, curve, figure (PNG, SVG), joint.json and state.json are in {out.resolve()}"
     if len(found) == 1:
         ((name, (result, checked)),) = found.items()
-        text = f"{summary(result)}\n\n{of_checks(checked, IN_LOG)}\n\n{where}"
+        text = f"{summary(result)}\n\n{of_checks(checked)}\n\n{where}"
         common.answer(text, values[name], result.headline)
     else:
         rows = [(name, result.headline) for name, (result, _) in found.items()]

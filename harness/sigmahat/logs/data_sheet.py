@@ -28,6 +28,19 @@ UNITS = {
 """Units of other estimates of FilteredRegression: output bias_hat, parameter prior.bias."""
 MOTOR = {"B": "kg.m2", "D_theta": "N.m.s/rad"}
 """Units of the motor data: parameter motor.B, output B_hat."""
+WORDS = {
+    "gamma": "gear ratio",
+    "B": "inertia of the motor",
+    "D_theta": "viscous friction of the motor",
+    "tau_coulomb": "Coulomb friction of the motor",
+    "bias": "bias of the torque",
+    "damping": "damping of the joint",
+    "load_friction": "friction by load",
+    "eccentric": "eccentricity of the encoders",
+    "delay": "delay of the torque",
+    "hysteresis": "hysteresis",
+}
+"""What the parameters and the effects of the joint are, for people."""
 
 
 def priors(p: Mapping[str, Value]) -> dict[str, float]:

@@ -25,7 +25,7 @@ from sigmahat.joint.curve import (
 )
 from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.curve import POINTS, Answer, write_points
-from sigmahat.logs.data_sheet import MOTOR, UNITS, absent, data_sheet, exact, priors
+from sigmahat.logs.data_sheet import UNITS, WORDS, data_sheet, priors
 from sigmahat.logs.job import Replay, StiffnessChange
 from sigmahat.logs.learned import LEARNED, read_learned, write_learned
 from sigmahat.logs.log import Log
@@ -219,11 +219,6 @@ def _save_figure(replay: Replay, answered: Answer, folder: Path) -> None:
 
 
 _NEGLIGIBLE = 0.1  # fraction of the standard deviation of a prior: smaller estimates are not shown
-_WORDS = {
-    "tau_coulomb": "Coulomb friction",
-    "load_friction": "load friction",
-    "eccentric": "eccentricity",
-}
 
 
 def summary(result: Estimate) -> str:
@@ -246,8 +241,7 @@ def summary(result: Estimate) -> str:
     ]
     lines += curve_text(result.curve)
     if p["method"] == "FilteredRegression":
-        lines += [*_found(result), "assumptions of this result:"]
-        lines += [f"  {each}" for each in _rests_on(result)]
+        lines += _found(result)
     return "\n".join(lines)
 
 
@@ -275,33 +269,11 @@ def _found(result: Estimate) -> Iterator[str]:
         f"{motor['D_theta_hat']:.4g} N.m.s/rad, Coulomb friction {motor['tau_coulomb_hat']:.3g} N.m"
     )
     others = [
-        f"{_WORDS.get(name, name)} {value:.3g} {UNITS[name]}".rstrip()
+        f"{WORDS[name]} {value:.3g} {UNITS[name]}".rstrip()
         for name, std in priors(result.parameters).items()
         if abs(value := result.joint[f"{name}_hat"]) > _NEGLIGIBLE * std
     ]
     yield f"of the joint: {', '.join([f'misfit of the model {result.misfit:.3g}', *others])}"
-
-
-def _rests_on(result: Estimate) -> Iterator[str]:
-    """Assumptions that no data can verify, and values that are taken as exact."""
-    p = result.parameters
-    gain = float(p["prior.torque_gain"])
-    known = f"known to {100 * gain:.3g} %" if gain else "exact"
-    yield (
-        f"gain of the torque: {known} (prior.torque_gain); 1 % of it changes sigma by "
-        f"{result.sigma_per_gain:.3g} %"
-    )
-    for name in exact(p):
-        value = float(p[f"motor.{name}"])
-        why = f"prior.{name} = 0" if value else "0 stays 0"
-        yield f"motor.{name} = {value:.4g} {MOTOR[name]}, exactly ({why})"
-    names = [_WORDS.get(name, name) for name in absent(p)]
-    if names:
-        yield f"no {', no '.join(names)} (priors of 0)"
-    yield (
-        f"ranges: torque about {p['prior.tau_e']:.3g} N.m at range.phi = {p['range.phi']:.3g} rad, "
-        f"range.setPoint = {p['range.setPoint']:.3g}"
-    )
 
 
 JOINTS = "joints.csv"

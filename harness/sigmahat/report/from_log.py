@@ -20,6 +20,7 @@ from sigmahat.joint.curve import (
 )
 from sigmahat.joint.sheet import FORMAT, Sheet
 from sigmahat.logs.curve import POINTS, MeasuredPoints, read_points
+from sigmahat.logs.data_sheet import WORDS
 from sigmahat.logs.estimate import JOINTS
 from sigmahat.logs.output import REPLAYED, EstimateTable, Replayed
 from sigmahat.logs.panels import curve_panels, quantity_panels, reduce, sampling, stiffness_panels
@@ -137,18 +138,6 @@ def _doubts(doubts: Mapping[str, float]) -> TextTable:
     return TextTable("Doubt", head, shares, note=note)
 
 
-_WORDS = {
-    "gamma": "gear ratio",
-    "B": "inertia of the motor",
-    "D_theta": "viscous friction of the motor",
-    "tau_coulomb": "Coulomb friction of the motor",
-    "bias": "bias of the torque",
-    "damping": "damping of the joint",
-    "load_friction": "friction by load",
-    "eccentric": "eccentricity of the encoders",
-    "delay": "delay of the torque",
-    "hysteresis": "hysteresis",
-}
 _FROM = {"prior": "the configuration (prior)", "identify": "identify", "exact": "taken as exact"}
 
 
@@ -169,7 +158,7 @@ def found_table(sheet: Sheet) -> TextTable:
         interval = "-" if each.interval is None else " to ".join(map(number, each.interval))
         unit = "" if each.unit == "1" else plain_unit(each.unit)
         source = _FROM.get(each.interval_from, each.interval_from)
-        rows.append([_WORDS.get(name, name), name, number(each.value), unit, interval, source])
+        rows.append([WORDS[name], name, number(each.value), unit, interval, source])
     head = ["", "name", "value", "unit", "95 % interval", "interval from"]
     return TextTable("Joint and motor", head, rows, words=(0, 1, 3, 5))
 
