@@ -17,7 +17,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sigmahat.logs.configuration import PORTS, Configuration, Port, Time
+from sigmahat.logs.configuration import Configuration, Port, Time
 from sigmahat.logs.log import Array, Log, LogError
 from sigmahat.logs.units import convert, factor, seconds, unwrap
 
@@ -97,7 +97,7 @@ def _sample(log: Log, configuration: Configuration, T: float) -> Samples:
         if port.time is not None:
             t = _times(log, configuration, port.time, T, notes)
             t -= start
-        column = _column(log, name, port, t, notes)
+        column = _column(log, name, port, len(t), notes)
         if port.delay:
             t = t - port.delay
             notes.append(f"{name}: moved back by {port.delay:g} s")
@@ -162,28 +162,18 @@ def _shown(times: Array, i: int) -> str:
     return f"{times[i] - times[0]:.9g} s from the first row"
 
 
-def _column(log: Log, name: str, port: Port, t: Array, notes: list[str]) -> Array:
-    """A column in the unit of its port; t are the times of its samples [s]."""
+def _column(log: Log, name: str, port: Port, times: int, notes: list[str]) -> Array:
+    """A column in the unit of its port, with as many samples as times."""
     values = log.read(port.column)
-    if len(values) != len(t):
+    if len(values) != times:
         raise LogError(
-            f"{log.path}: column {port.column!r} has {len(values)} samples, its time {len(t)}; "
+            f"{log.path}: column {port.column!r} has {len(values)} samples, its time {times}; "
             f"name its own times in ports.{name}.time"
         )
     if port.wrap is not None:
         values, jumps = unwrap(values, port.wrap)
         notes.append(f"{name}: unwrapped {jumps} times at {port.wrap:g} {port.unit or ''}".rstrip())
-    values = convert(name, port, values)
-    if port.wrap is None and PORTS[name] == "rad":
-        steps = np.diff(values)
-        jump = float(np.nanmax(np.abs(steps, out=steps), initial=0.0))
-        if jump > np.pi:  # of the steps that are no gaps
-            intervals = np.diff(t)
-            steps = steps[~(intervals > _USUAL_INTERVALS * np.nanmedian(intervals))]
-            jump = float(np.nanmax(steps, initial=0.0))
-        if jump > np.pi and port.unit is not None and name != "theta_c":
-            notes.append(f"{name}: jumps by {jump:.3g} rad; if the encoder wraps, set wrap")
-    return values
+    return convert(name, port, values)
 
 
 def _at_ticks(
