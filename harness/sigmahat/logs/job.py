@@ -123,24 +123,12 @@ class StiffnessChange:
         return f"the stiffness changed by {100 * self.relative:+.0f} % at {self.t:.4g} s"
 
 
-def _detected(
-    age: NDArray[np.float64], confident: NDArray[np.bool_], before: float, followed: bool
-) -> NDArray[np.intp]:
-    """Indices at which a change was detected: where the output change_age starts again.
+class Changes:
+    """Collects the changes from the outputs of a replay.
 
     The estimator may start again several times before it follows a change. So a further change
     counts only after a confident estimate since the last change.
-
-    before    value of change_age before the first index [s]
-    followed  whether no change was before, or an estimate was confident since the last change
     """
-    starts = restarts(age, before)
-    count = np.cumsum(confident)[starts]
-    return starts[np.diff(count, prepend=-1 if followed else 0) > 0]
-
-
-class Changes:
-    """Collects the changes from the outputs of a replay."""
 
     def __init__(self, every: Mapping[str, Value], T: float) -> None:
         """every  parameters of the estimator"""
@@ -160,9 +148,8 @@ class Changes:
         age = outputs["change_age"]
         eta = np.column_stack([outputs[name] for name in self.names])
         confident = np.flatnonzero(outputs["confident"])
-        new = _detected(age, outputs["confident"], self._age, self._followed)
-        for begin, end in pairwise([-1, *new.tolist(), len(age)]):
-            if begin >= 0:
+        for begin, end in pairwise([-1, *restarts(age, self._age).tolist(), len(age)]):
+            if begin >= 0 and self._followed:
                 self._at = float(outputs["phi"][begin]), float(outputs["setPoint"][begin])
                 self._before = None if self._eta is None else self._stiffness(self._eta)
                 self._eta, self._followed = None, False
