@@ -93,7 +93,7 @@ def test_dates_are_times_and_stay_as_they_are(shell: Shell) -> None:
     strings = pyarrow.csv.ConvertOptions(column_types={"t": pyarrow.string()})
     written = pyarrow.csv.read_csv("estimate.csv", convert_options=strings)
     assert written["t"].to_pylist() == text.tolist()
-    assert np.allclose(EstimateTable(Path())["t"], plain_log()["t"], rtol=0, atol=1e-12)
+    assert np.allclose(EstimateTable(Path()).t, plain_log()["t"], rtol=0, atol=1e-12)
 
 
 def test_a_text_as_programs_write_it_is_read_with_a_word(shell: Shell) -> None:
@@ -130,7 +130,7 @@ def test_estimates_are_read_as_they_were_written(suffix: str, shell: Shell) -> N
     write_log({**plain_log(), "note [V]": np.full(ROWS, 3.0)}, Path(f"log{suffix}"), CONFIGURATION)
     shell.run(f"estimate log{suffix} --out out")
     signals = EstimateTable(Path("out"))
-    assert next(iter(signals)) == "t"
+    assert next(iter(signals)) == "sigma" and signals.used.all()
     units = signals.units
     assert units.items() >= {"t": "s", "sigma": "N.m/rad", "a": "1", "valid": None}.items()
     assert not units.keys() & {"note", "q", "theta"}  # these are in the log

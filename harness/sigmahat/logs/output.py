@@ -14,7 +14,6 @@ import json
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import AbstractContextManager, contextmanager
-from copy import copy
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -41,7 +40,7 @@ _PREFIX = "estimate."
 _REPEATED = 2  # from this number of rows per distinct value on, a dictionary is shorter
 _TIME = "t"
 _TIMES = (_TIME, "change_age")
-_DOUBT = "doubt"  # the output that is text
+_DOUBT, _VALID = "doubt", "valid"  # a text, and a flag
 
 
 class EstimateWriter(AbstractContextManager["EstimateWriter"]):
@@ -196,7 +195,7 @@ def mcap_file(
 
 
 class EstimateTable(Mapping[str, NDArray[np.float64]]):
-    """The numbers that `sigmahat estimate` wrote into a folder, by name; true is 1.
+    """The outputs that `sigmahat estimate` wrote into a folder, by name, as numbers; true is 1.
 
     A column is read at each access: all columns of a long log together do not fit the memory.
     """
@@ -214,9 +213,12 @@ class EstimateTable(Mapping[str, NDArray[np.float64]]):
         names = [tables.name_and_unit(title.removeprefix(_PREFIX)) for title in titles]
         self.units = dict(names)  # unit of each output, None for flags
         self._titles = dict(zip(self.units, titles, strict=True))
-        if not self.units.keys() >= {*_TIMES, "sigma", "valid", _DOUBT}:
+        if not self.units.keys() >= {*_TIMES, "sigma", _VALID, _DOUBT}:
             raise LogError(f"{path}: no table of `sigmahat estimate`; run it again")
         del self._titles[_DOUBT]
+        self.t = self._log.read(self._titles.pop(_TIME))  # times of the rows [s]
+        self.used = self._log.read(self._titles.pop(_VALID)).astype(np.bool_)
+        """Whether the estimator used a row: its output valid."""
 
     def __getitem__(self, name: str) -> NDArray[np.float64]:
         return self._log.read(self._titles[name])
@@ -226,12 +228,6 @@ class EstimateTable(Mapping[str, NDArray[np.float64]]):
 
     def __len__(self) -> int:
         return len(self._titles)
-
-    def without(self, *names: str) -> EstimateTable:
-        """The table without these columns."""
-        rest = copy(self)
-        rest._titles = {n: title for n, title in self._titles.items() if n not in names}
-        return rest
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,7 @@ class Reduced:
     """Signals at common times."""
 
     t: NDArray[np.float64]
-    signals: Mapping[str, NDArray[Any]]  # signals, with the shape of t
+    signals: dict[str, NDArray[Any]]  # signals, with the shape of t
     bucket: int
     """Number of samples from which minimum and maximum are kept; 1: every sample is kept."""
 

@@ -6,7 +6,6 @@ from datetime import datetime
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sigmahat.files.tables import read_csv
 from sigmahat.joint.curve import (
@@ -36,21 +35,20 @@ def from_log(folder: Path) -> Contents:
 
     Raises ValueError, which says what to do, for a file that is missing, damaged or wrong.
     """
-    table = EstimateTable(folder)
-    used, t = table["valid"].astype(bool), table["t"]
-    signals = table.without("valid", "t")
+    signals = EstimateTable(folder)
+    t, used = signals.t, signals.used
     sheet, log, curve, points = _beside_the_table(folder)
     regression = sheet.method == "FilteredRegression"
-    # The other method gives no interval, and predicts no friction.
-    drawn = signals if regression else signals.without("sigma_std")
     bandwidth = float(sheet.start_values["regression.bandwidth"])
-    of_model = residuals(t, drawn, used, bandwidth) if regression else None
-    reduced = reduce(t, drawn)
+    of_model = residuals(t, signals, used, bandwidth) if regression else None
+    reduced = reduce(t, signals)
+    if not regression:
+        del reduced.signals["sigma_std"]  # the method gives no interval
     tables = [
         *([curve_table(curve)] if curve.branches else []),
         found_table(sheet),
         *([] if log.findings is None else [findings_table(log.findings)]),
-        _estimates(signals, used),
+        _estimates(signals),
         _doubts(log.doubt),
         estimator_table(sheet),
     ]
@@ -114,9 +112,10 @@ def findings_table(findings: Sequence[tuple[str, str]]) -> TextTable:
     return TextTable("Checks", ["", "finding"], list(map(list, findings)), (0, 1), note=note)
 
 
-def _estimates(signals: EstimateTable, used: NDArray[np.bool_]) -> TextTable:
+def _estimates(signals: EstimateTable) -> TextTable:
     """Each output at the end, and its range and RMS where the estimator ran in the second half."""
-    late = used & (np.arange(len(used)) >= len(used) // 2)
+    late = signals.used.copy()
+    late[: len(late) // 2] = False
     rows = []
     for name in signals:
         if name not in _OF_THE_METHOD:
