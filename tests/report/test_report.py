@@ -2,7 +2,6 @@
 
 import csv
 import html
-from base64 import b64encode
 from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
@@ -11,15 +10,11 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet
 import pytest
-from PIL import Image
 from selenium.webdriver.common.by import By
 
 from browser import DATA, ROWS, Page, opened
 from command_line import Shell, working_in
 from recorded_logs import CONFIGURATION, awas_log, read_estimate, write_log
-from sigmahat.compare.conditions import JOINTS
-from sigmahat.compare.job import compare
-from sigmahat.compare.table import write
 from sigmahat.logs.panels import reduce
 
 PICTURE = """
@@ -148,24 +143,10 @@ def test_a_sweep_has_the_numbers_of_its_summary(results: Callable[[str], Path], 
     assert errors == [row["msrep_settled [%]"] for row in own]
 
 
-def test_a_comparison_has_the_numbers_of_its_file_and_fits_a_phone(shell: Shell) -> None:
-    (joint,) = [each for each in JOINTS if each.scenario.name == "single-linear"]
-    write(compare([joint], [1], processes=1), 1, Path("compare.csv"))
-    Image.new("RGB", (1, 1)).save("compare.png")
-    shell.run("report .")
-    lines, file = Path("compare.csv").read_text().splitlines()[1:], Path("report.html").absolute()
-    with opened(file, width=400) as page:
+def test_a_page_fits_a_phone(results: Callable[[str], Path]) -> None:
+    with opened(results("sweep") / "report.html", width=400) as page:
         assert page.complaints() == []
-        assert page.requests() == [file.as_uri()]
         assert page.run("return document.documentElement.scrollWidth") <= 400
-        rows = page.run(ROWS, "single transmission")
-        picture = page.run("return document.querySelector('img').src")
-    assert picture.endswith(b64encode(Path("compare.png").read_bytes()).decode())
-    assert len(rows) == len(lines) == 4
-    for row, line in zip(rows, lines, strict=True):
-        group, of, case, method, seeds, _, msrep, *_ = line.split(",")
-        assert (group, seeds) == ("single transmission", "1")
-        assert row.startswith(f"{of} {case} {method}") and f" {float(msrep):.4g} " in row
 
 
 def test_names_are_not_taken_for_html(results: Callable[[str], Path], shell: Shell) -> None:
@@ -198,7 +179,7 @@ def test_fewer_points_of_a_long_signal_keep_every_peak(samples: int) -> None:
 @pytest.mark.parametrize(
     ("files", "words"),
     [
-        (None, "expected a folder of `sigmahat reproduce`, `estimate`, `sweep` or `compare`"),
+        (None, "no result of `sigmahat reproduce`, `estimate` or `sweep` (expected one of"),
         ({}, "no result of"),
         ({"runs.sqlite": b""}, "a sweep that is not complete; run its command again"),
         ({"sweep.parquet": b"PAR1 cut off"}, "not the table of a sweep; run the sweep again"),
@@ -207,8 +188,6 @@ def test_fewer_points_of_a_long_signal_keep_every_peak(samples: int) -> None:
         ({"estimate.csv": b"t,x\n1,2\n"}, "csv: no table of `sigmahat estimate`"),
         ({"table.csv": b"estimation,seeds\nRESIDUAL,1\n"}, "no result of `sigmahat reproduce`"),
         ({"table.csv": b"a,b\n1\n"}, "not readable as CSV"),
-        ({"compare.csv": b"a,b\n1,2\n"}, "no table of `sigmahat compare`; run it again"),
-        ({"misfits.csv": b"group,seeds\nx,2\n"}, "no table of `sigmahat compare`; run it again"),
     ],
 )
 def test_bad_input(files: dict[str, bytes] | None, words: str, shell: Shell) -> None:

@@ -201,8 +201,7 @@ def export(sheet: Path, to: str, out: Path | None, force: bool) -> None:
 def report(folder: Path, out: Path | None) -> None:
     """Make one HTML file of the results in FOLDER, with plots to zoom.
 
-    FOLDER is what `sigmahat reproduce`, `estimate`, `sweep` or `compare` wrote. The file opens
-    offline.
+    FOLDER is what `sigmahat reproduce`, `estimate` or `sweep` wrote. The file opens offline.
     """
     from sigmahat.files.output import write_whole
     from sigmahat.report.page import report as make

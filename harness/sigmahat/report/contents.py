@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Container, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -36,7 +35,6 @@ class Contents:
     headline: str = ""  # the result in one line, above all lines
     answer: Sequence[Panel] = ()  # panels above all other panels, and above the tables
     notes: Sequence[str] = ()  # sentences about the processing of the samples
-    pictures: Sequence[Path] = ()  # PNG files
     marks: Sequence[float] = ()  # times of dotted lines in the panels over time [s]
 
 

@@ -1,16 +1,12 @@
 """The job of `sigmahat report`: one HTML file of the results in a folder, of several commands."""
 
 import re
-from base64 import b64encode
 from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 
-import pyarrow as pa
 from bokeh.embed import components
 from bokeh.resources import Resources
 
-from sigmahat.files.tables import read_csv
 from sigmahat.files.templates import environment
 from sigmahat.logs.estimate import JOINTS
 from sigmahat.logs.panels import quantity_panels, reduce, sampling, stiffness_panels
@@ -23,10 +19,6 @@ from sigmahat.sweep.panels import against_parameters, distributions
 from sigmahat.sweep.summary import summary_columns
 from sigmahat.sweep.table import FAILURE, RUN, Role, read, title
 
-METHODS, MISFITS = "compare.csv", "misfits.csv"
-"""Files of `compare` and `compare --misfits`; the figure has the same name."""
-_FIRST = {METHODS: "group", MISFITS: "class"}  # column whose values head the tables
-_SEEDS = "seeds"  # another column of these files
 _MAIN = "RESIDUAL"  # estimator for panels of a single estimator: RESIDUAL needs no torque sensor
 _STIFFNESS = re.compile(r"sigma(_\d)?")
 
@@ -61,29 +53,6 @@ def from_reproduction(folder: Path) -> Contents:
     )
 
 
-def from_comparison(name: str, folder: Path) -> Contents:
-    """The figure, and a table for each group of conditions; name is METHODS or MISFITS.
-
-    Raises ValueError, which says what to do, if the file is not what `compare` wrote.
-    """
-    table = read_csv(folder / name)
-    first = _FIRST[name]
-    if table.column_names[:1] != [first] or _SEEDS not in table.column_names or not table.num_rows:
-        raise ValueError(f"{folder / name}: no table of `sigmahat compare`; run it again")
-    groups = table[first].to_pylist()
-    seeds = table[_SEEDS][0].as_py()
-    shown = table.drop_columns([first, _SEEDS])
-    tables = [
-        of_file(group, shown.filter(pa.array([each == group for each in groups])))
-        for group in dict.fromkeys(groups)
-    ]
-    picture = (folder / name).with_suffix(".png")
-    pictures = [picture] if picture.is_file() else []
-    lines = [f"{table.num_rows} rows; mean over {seeds} seed{'s' if seeds > 1 else ''}"]
-    title = f"Comparison: {folder.resolve().name}"
-    return Contents(title, lines, tables, [], pictures=pictures)
-
-
 def from_sweep(folder: Path) -> Contents:
     """The summary, the distribution of the error, and the error against each parameter.
 
@@ -106,22 +75,16 @@ def from_sweep(folder: Path) -> Contents:
 
 
 def report(folder: Path) -> str:
-    """HTML with the tables and plots of a reproduction, a log, a sweep or a comparison in a folder.
+    """HTML with the tables and plots of a reproduction, a log or a sweep in a folder.
 
     Raises ValueError, which says what to do, if the folder has no such results, or damaged files.
     """
-    if not folder.is_dir():
-        raise ValueError(
-            f"{folder}: expected a folder of `sigmahat reproduce`, `estimate`, `sweep` or `compare`"
-        )
     kinds: dict[str, Callable[[Path], Contents]] = {
         "sweep.parquet": from_sweep,
         TABLE: from_reproduction,
         "estimate.parquet": from_log,
         "estimate.csv": from_log,
         JOINTS: from_joints,
-        METHODS: partial(from_comparison, METHODS),
-        MISFITS: partial(from_comparison, MISFITS),
     }
     for name, contents in kinds.items():
         if (folder / name).is_file():
@@ -129,7 +92,7 @@ def report(folder: Path) -> str:
     if (folder / "runs.sqlite").is_file():
         raise ValueError(f"{folder}: a sweep that is not complete; run its command again first")
     raise ValueError(
-        f"{folder}: no result of `sigmahat reproduce`, `estimate`, `sweep` or `compare` "
+        f"{folder}: no result of `sigmahat reproduce`, `estimate` or `sweep` "
         f"(expected one of {', '.join(kinds)})"
     )
 
@@ -144,7 +107,6 @@ def _page(contents: Contents) -> str:
         style=PAGE.read_text(encoding="utf-8"),
         answer=shown[:first],
         plots=shown[first:],
-        pictures=[b64encode(path.read_bytes()).decode() for path in contents.pictures],
         library=Resources(mode="inline", components=["bokeh"]).render() if panels else "",
         script=script,
     )
