@@ -114,13 +114,16 @@ def _sample(log: Log, configuration: Configuration, T: float) -> Samples:
 
 
 def _tick_of(rows: Array, T: float, ticks: int) -> NDArray[np.int32]:
-    """As tick_of_row of Samples; times since the first tick [s], nan where unknown."""
-    tick = rows / T
-    tick += AT_TICK
-    np.floor(tick, out=tick)
-    tick[np.isnan(tick)] = -1
-    np.maximum.accumulate(tick, out=tick)
-    return np.clip(tick, 0, ticks - 1, out=tick).astype(np.int32)
+    """As tick_of_row of Samples.
+
+    rows  times since the first tick [s], nan where unknown; changed, for the memory
+    """
+    rows /= T
+    rows += AT_TICK
+    np.floor(rows, out=rows)
+    rows[np.isnan(rows)] = -1
+    np.maximum.accumulate(rows, out=rows)
+    return np.clip(rows, 0, ticks - 1, out=rows).astype(np.int32)
 
 
 def _times(
