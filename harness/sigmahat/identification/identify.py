@@ -54,6 +54,7 @@ _HIDDEN = (
     "encoders: the log cannot tell the inertia of the motor from the inertia of the load; record "
     "more frequencies, or give motor.B and prior.B"
 )
+_SLOWEST = 0.25  # between samples [s]: as long as a block of errors
 _V_A_HIGHEST = 0.1  # low pass of the velocity to compare with, in sampling frequencies
 
 
@@ -85,6 +86,11 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
     every = fmu.parameters(start)
     samples = _beginning(sample(log, configuration, float(every["samplePeriod"])))
     T, gamma = samples.T, float(every["motor.gamma"])
+    if T > _SLOWEST:
+        raise LogError(
+            f"{log.path}: samples {T:g} s apart do not show the motion of a joint, expected at "
+            f"most {_SLOWEST} s; check time.unit and samplePeriod"
+        )
     pieces = list(signals_of(samples, every, sensor=torque_constant))
     if not pieces:
         raise LogError(f"{log.path}: {_too_short(samples, shortest(T) * T)}")
