@@ -17,6 +17,7 @@ from sigmahat.fmi.instance import FmuError, Slave, Value, installed
 from sigmahat.identification.noise import variance
 from sigmahat.identification.quantities import WIDE
 from sigmahat.logs.configuration import PORTS, Configuration
+from sigmahat.logs.data_sheet import absent, exact
 from sigmahat.logs.log import Log, LogError
 from sigmahat.logs.replay import parameters
 
@@ -200,6 +201,13 @@ def _rests_on(seen: View, start: Mapping[str, Value]) -> Iterator[Finding]:
         if every["modality"] == "Residual" and is_other and float(every[f"prior.{name}"]) < WIDE:
             value = float(every[f"motor.{name}"])
             yield Finding(Kind.OTHER_ROBOT, Severity.RESTS_ON, f"motor.{name}", value, "")
+    if every["method"] != "FilteredRegression":
+        return
+    for name in exact(every):
+        value = float(every[f"motor.{name}"])
+        yield Finding(Kind.EXACT, Severity.RESTS_ON, f"prior.{name}", value, "", about=name)
+    for name in absent(every):
+        yield Finding(Kind.ABSENT, Severity.RESTS_ON, f"prior.{name}", 0.0, "", about=name)
 
 
 def _range(seen: View) -> Iterator[Finding]:

@@ -41,6 +41,8 @@ class Kind(Enum):
     NOISE = "prediction error and noise"
     RANGE = "range of the deformation"
     TORQUE_GAIN = "gain of the torque"
+    EXACT = "motor data taken as exact"
+    ABSENT = "effects taken as absent"
 
 
 @dataclass(frozen=True)

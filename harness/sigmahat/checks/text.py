@@ -122,4 +122,6 @@ _SENTENCES: Mapping[Kind, str] = {
     Kind.NOISE: "the noise of the torque is {measured}, the configuration says {expected}",
     Kind.RANGE: "the log has up to {measured}, the configuration {expected} (identify sets it)",
     Kind.TORQUE_GAIN: "gain of the torque, {gain}; an error of it is an error of the stiffness",
+    Kind.EXACT: "motor.{about} = {value:.4g} is taken as exact",
+    Kind.ABSENT: "no {effect} is assumed",
 }
