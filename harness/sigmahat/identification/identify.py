@@ -58,8 +58,13 @@ _SLOWEST = 0.25  # between samples [s]: as long as a block of errors
 _V_A_HIGHEST = 0.1  # low pass of the velocity to compare with, in sampling frequencies
 
 
-def _too_short(samples: Samples, needed: float) -> str:
-    """Why no stretch of a log is long enough [s], and what to do."""
+def _unusable(samples: Samples, needed: float) -> str:
+    """Why no stretch of a log can be used, which needs so much time [s], and what to do."""
+    if samples.T > _SLOWEST:
+        return (
+            f"samples {samples.T:g} s apart do not show the motion of a joint, expected at most "
+            f"{_SLOWEST} s; check time.unit and samplePeriod"
+        )
     duration = len(samples.values) * samples.T
     if duration < needed:
         least = f"at least {needed:.3g} s with samples {samples.T:g} s apart"
@@ -86,14 +91,9 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
     every = fmu.parameters(start)
     samples = _beginning(sample(log, configuration, float(every["samplePeriod"])))
     T, gamma = samples.T, float(every["motor.gamma"])
-    if T > _SLOWEST:
-        raise LogError(
-            f"{log.path}: samples {T:g} s apart do not show the motion of a joint, expected at "
-            f"most {_SLOWEST} s; check time.unit and samplePeriod"
-        )
-    pieces = list(signals_of(samples, every, sensor=torque_constant))
+    pieces = list(signals_of(samples, every, sensor=torque_constant)) if T <= _SLOWEST else []
     if not pieces:
-        raise LogError(f"{log.path}: {_too_short(samples, shortest(T) * T)}")
+        raise LogError(f"{log.path}: {_unusable(samples, shortest(T) * T)}")
     longest = max(pieces, key=lambda piece: len(piece.theta))
     noise = TorqueNoise.of(longest.tau, longest.theta, every, T)
     bandwidth = noise.bandwidth

@@ -255,10 +255,12 @@ def _second_half(result: Estimate) -> Iterator[str]:
     yield f"  deformation phi       {result.phi_range[0]:10.4g} to {result.phi_range[1]:10.4g} rad"
     yield f"  prediction error RMS  {result.epsilon_rms:10.4g} N.m ({relative} of the torque)"
     if result.parameters["method"] == "FilteredRegression":
-        reasons = ", ".join(f"{item} {100 * share:.3g} %" for item, share in result.doubt.items())
-        why = f" ({reasons})" if reasons else ""
         yield from (f"  {each.in_words}" for each in result.changes)
-        yield f"  not confident         {100 * (1 - result.confident):10.3g} % of the time{why}"
+        yield f"  not confident         {100 * (1 - result.confident):10.3g} % of the time"
+        items = installed("StiffnessEstimator").variable("doubt").declaredType.items
+        for item in items:
+            if item.name in result.doubt:
+                yield f"    {item.name} {100 * result.doubt[item.name]:.3g} %: {item.description}"
 
 
 def _found(result: Estimate) -> Iterator[str]:
@@ -273,7 +275,9 @@ def _found(result: Estimate) -> Iterator[str]:
         for name, std in priors(result.parameters).items()
         if abs(value := result.joint[f"{name}_hat"]) > _NEGLIGIBLE * std
     ]
-    yield f"of the joint: {', '.join([f'misfit of the model {result.misfit:.3g}', *others])}"
+    effects = ", ".join([f"misfit of the model {result.misfit:.3g}", *others])
+    by_gain = f"1 % of the torque's gain changes the stiffness by {result.sigma_per_gain:.3g} %"
+    yield f"of the joint: {effects}; {by_gain}"
 
 
 JOINTS = "joints.csv"
