@@ -103,17 +103,6 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real currentCommunicationPoint,
                                              "fmi2DoStep");
 }
 
-fmi2Status fmi2CancelStep(fmi2Component c)
-{
-    sh_instance *instance = sh_enter(c, SH_ANY, "fmi2CancelStep");
-
-    if (instance != NULL) {
-        sh_report(instance, SH_ERROR,
-                  "fmi2CancelStep: no step is in progress; steps run synchronously.");
-    }
-    return fmi2Error;
-}
-
 /* Status information exists for asynchronous and for discarded steps. This FMU has no such steps,
  * and knows only the time of the last step.
  */

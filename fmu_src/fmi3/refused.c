@@ -10,27 +10,16 @@
 
 /* NOLINTBEGIN(misc-unused-parameters) */
 
-static fmi3Status refuse(fmi3Instance instance, const char *function, const char *missing)
-{
-    sh_instance *entered = sh_enter(instance, SH_ANY, function);
-
-    if (entered != NULL) {
-        sh_report(entered, SH_ERROR, "%s: %s has no %s.", function, sh_fmu_model.identifier,
-                  missing);
-    }
-    return fmi3Error;
-}
-
 #define REFUSED(Name, missing)                                                                     \
     fmi3Status fmi3##Name(fmi3Instance instance)                                                   \
     {                                                                                              \
-        return refuse(instance, "fmi3" #Name, missing);                                            \
+        return (fmi3Status)sh_refuse_feature(instance, "fmi3" #Name, missing);                     \
     }
 
 #define REFUSED_WITH(Name, missing, ...)                                                           \
     fmi3Status fmi3##Name(fmi3Instance instance, __VA_ARGS__)                                      \
     {                                                                                              \
-        return refuse(instance, "fmi3" #Name, missing);                                            \
+        return (fmi3Status)sh_refuse_feature(instance, "fmi3" #Name, missing);                     \
     }
 
 #define REFERENCES const fmi3ValueReference valueReferences[], size_t nValueReferences

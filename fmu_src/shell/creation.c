@@ -81,6 +81,17 @@ void *sh_refuse_instance(const sh_importer *importer, const char *function, cons
     return NULL;
 }
 
+sh_status sh_refuse_feature(void *handle, const char *function, const char *missing)
+{
+    sh_instance *instance = sh_enter(handle, SH_ANY, function);
+
+    if (instance != NULL) {
+        sh_report(instance, SH_ERROR, "%s: %s has no %s.", function, sh_fmu_model.identifier,
+                  missing);
+    }
+    return SH_ERROR;
+}
+
 static void set_start_values(sh_instance *instance)
 {
     size_t i;

@@ -15,6 +15,9 @@ sh_instance *sh_create(const sh_importer *importer, const char *name, const char
 void *sh_refuse_instance(const sh_importer *importer, const char *function, const char *wanted);
 void sh_destroy(sh_instance *instance);
 
+/* SH_ERROR, after a message that this FMU does not have a feature. `handle` may be NULL. */
+sh_status sh_refuse_feature(void *handle, const char *function, const char *missing);
+
 /* NULL, after a message that the function is not allowed in this state. */
 sh_instance *sh_refuse_call(sh_instance *instance, const char *function);
 

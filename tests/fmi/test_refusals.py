@@ -158,9 +158,9 @@ ALLOWED = {
     r"fmi.ExitInitializationMode": {INITIALISATION},
     r"fmi.(DoStep|Terminate)": {STEP},
     rf"fmi3Get{VARIABLES}": EVERYWHERE,
-    rf"fmi2Get({VARIABLES}|DirectionalDerivative)": EVERYWHERE - {INSTANTIATED},
+    rf"fmi2Get{VARIABLES}": EVERYWHERE - {INSTANTIATED},
     rf"fmi.Set({VARIABLES}|RealInputDerivatives)": EVERYWHERE - {TERMINATED},
-    r"fmi2Get(RealOutputDerivatives|\w*Status)": {STEP, TERMINATED},
+    r"fmi2Get\w*Status": {STEP, TERMINATED},
 }
 """By functions, the states in which the standard allows them; others are not for these FMUs.
 
@@ -195,7 +195,7 @@ def test_a_function_is_refused_where_the_standard_does_not_allow_it(state: str, 
             assert len(fmu.messages) == 1
             message = error_of(fmu)
             assert message.startswith(f"{fmu.prefix}{function}: "), message
-            assert re.search("not allowed|has no|no step is in progress", message)
+            assert re.search("not allowed|has no", message)
 
 
 def test_without_an_instance_every_function_fails_quietly(fmi: Fmi) -> None:
@@ -262,7 +262,7 @@ WRONG: dict[str, list[tuple[str, str, tuple[Any, ...]]]] = {
         ("SetRealInputDerivatives", "argument order is NULL", (INPUTS, TWO, None, VALUES)),
         ("SetRealInputDerivatives", "expected 1", (INPUTS, TWO, (ctypes.c_int * 2)(1, 2), VALUES)),
         ("GetRealStatus", "argument value is NULL", (2, None)),
-        ("CancelStep", "no step is in progress", ()),
+        ("CancelStep", "has no steps that run asynchronously", ()),
     ],
     "fmi3": [
         *(
@@ -302,8 +302,7 @@ def test_a_wrong_argument_is_named_and_changes_nothing(name: str, fmi: Fmi) -> N
 def test_derivatives_are_those_of_inputs_and_may_be_none() -> None:
     with FMI2().initialise() as fmu:
         refused(fmu, "motor.B is not an input", fmu.set_derivative, "motor.B", 1.0)
-        for function in ("SetRealInputDerivatives", "GetRealOutputDerivatives"):
-            assert fmu.call(function, None, NONE, None, None) == OK
+        assert fmu.call("SetRealInputDerivatives", None, NONE, None, None) == OK
 
 
 # Instances

@@ -1,0 +1,32 @@
+/* FMI 2.0: the functions for features that these FMUs do not have, as in fmi3/refused.c. */
+#include "fmi2Functions.h"
+#include "simulation.h"
+
+#ifdef __GNUC__
+#pragma GCC diagnostic ignored "-Wunused-parameter" /* no argument but the instance is used */
+#endif
+
+/* NOLINTBEGIN(misc-unused-parameters) */
+
+fmi2Status fmi2CancelStep(fmi2Component c)
+{
+    return (fmi2Status)sh_refuse_feature(c, "fmi2CancelStep", "steps that run asynchronously");
+}
+
+fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
+                                        const fmi2Integer order[], fmi2Real value[])
+{
+    return (fmi2Status)sh_refuse_feature(c, "fmi2GetRealOutputDerivatives",
+                                         "derivatives of outputs (maxOutputDerivativeOrder is 0)");
+}
+
+fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference vUnknown_ref[],
+                                        size_t nUnknown, const fmi2ValueReference vKnown_ref[],
+                                        size_t nKnown, const fmi2Real dvKnown[],
+                                        fmi2Real dvUnknown[])
+{
+    return (fmi2Status)sh_refuse_feature(c, "fmi2GetDirectionalDerivative",
+                                         "directional derivatives");
+}
+
+/* NOLINTEND(misc-unused-parameters) */
