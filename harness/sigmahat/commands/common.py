@@ -22,7 +22,6 @@ import click
 if TYPE_CHECKING:
     from sigmahat.logs.configuration import Configuration
     from sigmahat.logs.log import Log
-    from sigmahat.runs.scenario import Scenario
 
 FILE, PATH = click.Path(path_type=Path, dir_okay=False), click.Path(path_type=Path)
 COUNT = click.IntRange(min=1)
@@ -106,7 +105,7 @@ def for_each_joint(
     from sigmahat.logs.configuration import joints_of, read_document
     from sigmahat.logs.readers.formats import open_log
 
-    need_fmu("StiffnessEstimator")
+    need_fmus("StiffnessEstimator")
     open_log(log)  # a missing log is reported before a missing configuration
     joints = [joint] if joint else joints_of(read_document(config), config)
     if len(joints) == 1:
@@ -188,35 +187,18 @@ def progress(label: str, length: int) -> Any:
     return click.progressbar(length=length, label=label, file=sys.stderr, hidden=hidden)
 
 
-def need_fmu(name: str) -> None:
-    """Raises ClickException, which says what to do, if an FMU is not built."""
+def need_fmus(*names: str) -> None:
+    """Raises ClickException, which says what to do, if one of these FMUs is not built."""
     from sigmahat.fmi.installed import fmu
 
-    try:
-        fmu(name)
-    except FileNotFoundError as error:
-        build = "run `cmake --workflow --preset build`"
-        if not any(map(shutil.which, ("cc", "gcc", "clang"))):
-            build = f"install a C compiler (gcc or clang), then {build}"
-        raise click.ClickException(f"{name}.fmu is not built: {build}") from error
-
-
-def ready_scenario(name: str) -> Scenario:
-    """The scenario with this name, whose FMUs are built.
-
-    Raises ValueError for a name that does not exist, ClickException for an FMU that is not built.
-    """
-    from sigmahat.paper.scenarios import scenario
-
-    found = scenario(name)
-    need_fmus(found)
-    return found
-
-
-def need_fmus(scenario: Scenario) -> None:
-    """Raises ClickException, which says what to do, if an FMU of a scenario is not built."""
-    for fmu in {scenario.plant.fmu, *(each.fmu for each in scenario.estimators.values())}:
-        need_fmu(fmu)
+    for name in names:
+        try:
+            fmu(name)
+        except FileNotFoundError as error:
+            build = "run `cmake --workflow --preset build`"
+            if not any(map(shutil.which, ("cc", "gcc", "clang"))):
+                build = f"install a C compiler (gcc or clang), then {build}"
+            raise click.ClickException(f"{name}.fmu is not built: {build}") from error
 
 
 @contextmanager

@@ -43,7 +43,7 @@ def init(log: Path, config: Path, joint: str | None, force: bool) -> None:
     from sigmahat.guessing.guess import guess, one_joint
     from sigmahat.logs.readers.formats import open_log
 
-    common.need_fmu("StiffnessEstimator")
+    common.need_fmus("StiffnessEstimator")
     with common.errors_in_one_line(config, "--config"):
         opened = open_log(log)
         columns = read_columns(opened)
@@ -105,7 +105,7 @@ def open_page(log: Path, config: Path, port: int) -> None:
     from sigmahat.logs.readers.formats import open_log
     from sigmahat.page.server import serve
 
-    common.need_fmu("StiffnessEstimator")
+    common.need_fmus("StiffnessEstimator")
     with common.errors_in_one_line(config, "--config"):
         opened = open_log(log)
         document = read_document(config) if config.exists() else None

@@ -70,7 +70,7 @@ def live(
     from sigmahat.live.session import Session
     from sigmahat.live.watch import Inbox, terminal, watch
 
-    common.need_fmu("StiffnessEstimator")
+    common.need_fmus("StiffnessEstimator")
     with common.errors_in_one_line(out), created_folder(out):
         session, inbox = Session(config, out, start_from), Inbox()
         ends = Endpoints(session, host, out)

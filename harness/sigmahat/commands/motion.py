@@ -84,7 +84,7 @@ def motion(
     from sigmahat.motion import design, files, known
     from sigmahat.motion.joints import Limits, of_limits
 
-    common.need_fmu("StiffnessEstimator")
+    common.need_fmus("StiffnessEstimator")
     if after is not None and config is None:
         raise click.UsageError("--after LOG needs CONFIG, the configuration of the log")
     limits = Limits(angle, velocity, torque, deformation)

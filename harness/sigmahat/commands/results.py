@@ -180,7 +180,7 @@ def export(sheet: Path, to: str, out: Path | None, force: bool) -> None:
     from sigmahat.joint.robot_model import write_model
     from sigmahat.joint.sheet import FORMAT
 
-    common.need_fmu("StiffnessEstimator")
+    common.need_fmus("StiffnessEstimator")
     path = out or FORMAT.path(sheet).with_suffix(_SUFFIXES[to])
     with common.errors_in_one_line(path, "--out FILE"):
         contents = FORMAT.read(sheet)

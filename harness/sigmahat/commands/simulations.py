@@ -25,10 +25,12 @@ def reproduce(scenario: str, seeds: int, out: Path) -> None:
     """Run a scenario; print its table, draw its figures."""
     from sigmahat.files.output import output_folder
     from sigmahat.paper.reproduction import as_dict, conditions, reproduce, table, write_results
+    from sigmahat.paper.scenarios import scenario as named
     from sigmahat.runs.metrics import MSREP_IN_WORDS
 
     with common.errors_in_one_line(out):
-        chosen = common.ready_scenario(scenario)
+        chosen = named(scenario)
+    common.need_fmus(*chosen.fmus)
     if seeds > 1:
         import_module("scipy")  # intervals need scipy: report a missing package before the runs
     numbers = range(1, seeds + 1)
@@ -80,7 +82,7 @@ def _methods(seeds: int, jobs: int | None, out: Path) -> None:
     from sigmahat.runs.metrics import MSREP_IN_WORDS
 
     for joint in JOINTS:
-        common.need_fmus(joint.scenario)
+        common.need_fmus(*joint.scenario.fmus)
 
     with common.errors_in_one_line(out), output_folder(out) as folder:
         with common.progress("Running", len(JOINTS) * seeds) as bar:
@@ -111,9 +113,7 @@ def _misfits(seeds: int, jobs: int | None, out: Path) -> None:
     from sigmahat.compare.misfits.table import as_dicts, table, write
     from sigmahat.files.output import output_folder
 
-    for fmu in (PLANT, ESTIMATOR):
-        common.need_fmu(fmu)
-
+    common.need_fmus(PLANT, ESTIMATOR)
     with common.errors_in_one_line(out), output_folder(out) as folder:
         with common.progress("Running", len(pairs(CONDITIONS, JOINTS)) * seeds) as bar:
             rows = compare(CONDITIONS, JOINTS, range(1, seeds + 1), jobs, bar.update)
@@ -190,6 +190,7 @@ def sweep(
     After an interruption, the same command does the missing runs; with more seeds, only the runs
     of the new seeds.
     """
+    from sigmahat.paper.scenarios import scenario as named
     from sigmahat.sweep.job import sweep as run
     from sigmahat.sweep.plan import read_plan
     from sigmahat.sweep.summary import as_dicts, conditions, summary
@@ -197,7 +198,7 @@ def sweep(
     with common.errors_in_one_line(out):
         plan = read_plan(scenario, seeds, modality, settings)
         for name in plan.scenarios:
-            common.ready_scenario(name)
+            common.need_fmus(*named(name).fmus)
         with common.progress("Running", plan.count) as bar:
             result = run(plan, out, scheduler, progress=bar.update)
     common.answer(

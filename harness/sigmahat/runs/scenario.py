@@ -77,6 +77,12 @@ class Scenario:
         """Number of sampling times T from the start to the end."""
         return round(self.duration / self.T)
 
+    @property
+    def fmus(self) -> list[str]:
+        """The FMUs of plant and estimators, each once, in the order of their names."""
+        of_estimators = (str(each.fmu) for each in self.estimators.values())
+        return sorted({str(self.plant.fmu), *of_estimators})
+
 
 MOTION = ("phi", "theta_c")  # variables of the plant that have to be recorded
 MODEL = "MODEL"  # the estimator whose parameters model.* are the nominal data

@@ -118,7 +118,7 @@ def identity(run: Run) -> str:
 def _fmu_digest(name: str) -> str:
     """Digest of the installed FMUs of a scenario: 32 hexadecimal digits."""
     text = hashlib.sha256()
-    for fmu in sorted({str(model.fmu) for model in models(scenario(name)).values()}):
+    for fmu in scenario(name).fmus:
         text.update(installed_fmu(fmu).read_bytes())
     return text.hexdigest()[:32]
 
