@@ -15,15 +15,15 @@ const char *fmi2GetVersion(void)
     return fmi2Version;
 }
 
+/* The logger uses the message as a format: a % must not start a conversion. */
+const char sh_special = '%';
+
 void sh_deliver(const sh_instance *instance, sh_status status, const char *category,
                 const char *text)
 {
     const fmi2CallbackLogger logger = (fmi2CallbackLogger)instance->importer.logger;
-    char escaped[1024];
 
-    /* The logger uses the message as a format: a % must not start a conversion. */
-    sh_double(escaped, sizeof escaped, text, '%');
-    logger(instance->importer.environment, instance->name, (fmi2Status)status, category, escaped);
+    logger(instance->importer.environment, instance->name, (fmi2Status)status, category, text);
 }
 
 fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean loggingOn, size_t nCategories,

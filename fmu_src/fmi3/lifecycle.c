@@ -10,15 +10,15 @@ const char *fmi3GetVersion(void)
     return fmi3Version;
 }
 
+/* In a message #7# means the value of variable 7. */
+const char sh_special = '#';
+
 void sh_deliver(const sh_instance *instance, sh_status status, const char *category,
                 const char *text)
 {
     const fmi3LogMessageCallback logger = (fmi3LogMessageCallback)instance->importer.logger;
-    char escaped[1024];
 
-    /* In a message #7# means the value of variable 7. */
-    sh_double(escaped, sizeof escaped, text, '#');
-    logger(instance->importer.environment, (fmi3Status)status, category, escaped);
+    logger(instance->importer.environment, (fmi3Status)status, category, text);
 }
 
 fmi3Status fmi3SetDebugLogging(fmi3Instance instance, fmi3Boolean loggingOn, size_t nCategories,

@@ -16,20 +16,25 @@ static const struct {
              {"logStatusError", SH_LOG_ERROR},
              {"logAll", SH_LOG_ALL}};
 
-/* Texts of the importer may be no UTF-8, or be cut inside a character: only ASCII is shown. */
-static void make_ascii(char *text)
+/* Copies a message, at most size - 1 characters. Texts of the importer in it may be no UTF-8, or be cut
+ * inside a character: only ASCII is shown.
+ */
+static void escape(char *copy, size_t size, const char *text)
 {
-    while (*text != '\0') {
-        if ((unsigned char)*text >= 0x80) {
-            *text = '?';
+    size_t length = 0;
+
+    for (; *text != '\0' && length + 2 < size; ++text) {
+        if (*text == sh_special) {
+            copy[length++] = sh_special;
         }
-        ++text;
+        copy[length++] = (unsigned char)*text < 0x80 ? *text : '?';
     }
+    copy[length] = '\0';
 }
 
 void sh_report(sh_instance *instance, sh_status status, const char *format, ...)
 {
-    char text[512];
+    char text[512], escaped[1024];
     va_list arguments;
 
     if (instance->importer.logger == NULL || !(instance->categories & KNOWN[status].category)) {
@@ -38,8 +43,8 @@ void sh_report(sh_instance *instance, sh_status status, const char *format, ...)
     va_start(arguments, format);
     (void)vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    make_ascii(text);
-    sh_deliver(instance, status, KNOWN[status].name, text);
+    escape(escaped, sizeof escaped, text);
+    sh_deliver(instance, status, KNOWN[status].name, escaped);
 }
 
 sh_status sh_find_categories(void *handle, size_t count, const char *const categories[],
@@ -70,17 +75,4 @@ sh_status sh_find_categories(void *handle, size_t count, const char *const categ
         *found |= category;
     }
     return status;
-}
-
-void sh_double(char *copy, size_t size, const char *text, char special)
-{
-    size_t length = 0;
-
-    for (; *text != '\0' && length + 2 < size; ++text) {
-        if (*text == special) {
-            copy[length++] = special;
-        }
-        copy[length++] = *text;
-    }
-    copy[length] = '\0';
 }

@@ -14,7 +14,10 @@ enum {
     SH_LOG_ALL = 15
 };
 
-/* Gives a message to the importer's logger, which is not NULL. Each version of FMI has its own. */
+/* Each version of FMI has its own character that has a meaning in messages, which sh_report writes
+ * twice, and its own function that gives a message to the importer's logger, which is not NULL.
+ */
+extern const char sh_special;
 void sh_deliver(const sh_instance *instance, sh_status status, const char *category,
                 const char *text);
 
@@ -23,8 +26,5 @@ void sh_deliver(const sh_instance *instance, sh_status status, const char *categ
  */
 sh_status sh_find_categories(void *handle, size_t count, const char *const categories[],
                              unsigned *found, const char *function);
-
-/* Copies text, with every `special` character twice; at most size - 1 characters. */
-void sh_double(char *copy, size_t size, const char *text, char special);
 
 #endif
