@@ -5,8 +5,5 @@
 
 int sh_paper2011_check_state(const sh_estimator *estimator, const sh_parameters *p)
 {
-    if (estimator->method.paper2011.rls.P.size != p->rls.n * p->rls.m) {
-        return 1;
-    }
-    return 0;
+    return estimator->method.paper2011.rls.P.size != p->rls.n * p->rls.m;
 }
