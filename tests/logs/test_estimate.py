@@ -145,7 +145,7 @@ def test_why_and_how_often_the_estimate_is_not_confident(shell: Shell) -> None:
     text = shell.run("estimate log.parquet --out out")
     assert len(text.splitlines()) <= 30
     assert re.search(
-        r"not confident +\S+ % of the time\n +\w+ +\S+ %: sigma_std is too large", text
+        r"not confident +\S+ % of the time \(\w+ \S+ %.*\); sigma_std is too large", text
     )
     by_gain = f"1 % of the torque's gain changes the stiffness by {result['sigma_per_gain']:.3g} %"
     for line in (by_gain, "known to 1 %", "prior.B: motor.B = 1.84e-05 is taken as exact"):

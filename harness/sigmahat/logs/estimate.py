@@ -256,11 +256,17 @@ def _second_half(result: Estimate) -> Iterator[str]:
     yield f"  prediction error RMS  {result.epsilon_rms:10.4g} N.m ({relative} of the torque)"
     if result.parameters["method"] == "FilteredRegression":
         yield from (f"  {each.in_words}" for each in result.changes)
-        yield f"  not confident         {100 * (1 - result.confident):10.3g} % of the time"
-        items = installed("StiffnessEstimator").variable("doubt").declaredType.items
-        for item in items:
-            if item.name in result.doubt:
-                yield f"    {item.name} {100 * result.doubt[item.name]:.3g} %: {item.description}"
+        yield f"  not confident         {100 * (1 - result.confident):10.3g} % of the time{_why(result)}"
+
+
+def _why(result: Estimate) -> str:
+    """The reasons of doubt, and what the most frequent one means."""
+    if not result.doubt:
+        return ""
+    shares = ", ".join(f"{item} {100 * share:.3g} %" for item, share in result.doubt.items())
+    items = installed("StiffnessEstimator").variable("doubt").declaredType.items
+    meaning = {item.name: item.description for item in items}
+    return f" ({shares}); {meaning[max(result.doubt, key=result.doubt.__getitem__)]}"
 
 
 def _found(result: Estimate) -> Iterator[str]:
