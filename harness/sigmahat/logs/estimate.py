@@ -256,7 +256,8 @@ def _second_half(result: Estimate) -> Iterator[str]:
     yield f"  prediction error RMS  {result.epsilon_rms:10.4g} N.m ({relative} of the torque)"
     if result.parameters["method"] == "FilteredRegression":
         yield from (f"  {each.in_words}" for each in result.changes)
-        yield f"  not confident         {100 * (1 - result.confident):10.3g} % of the time{_why(result)}"
+        doubted = 100 * (1 - result.confident)
+        yield f"  not confident         {doubted:10.3g} % of the time{_why(result)}"
 
 
 def _why(result: Estimate) -> str:
