@@ -5,5 +5,8 @@
 
 int sh_paper2011_check_state(const sh_estimator *estimator, const sh_parameters *p)
 {
-    return estimator->method.paper2011.rls.P.size != p->rls.n * p->rls.m;
+    if (estimator->method.paper2011.rls.P.size != p->rls.n * p->rls.m) {
+        return 1;
+    }
+    return 0;
 }
