@@ -86,6 +86,28 @@ def test_a_joint_without_a_misfit_has_no_columns_of_one(c: Library) -> None:
     assert found["misfit"][-1] < 1.2
 
 
+def test_groups_of_columns_are_not_used_before_they_are_tried(c: Library) -> None:
+    values = {
+        "method": 2,
+        "prior.B": 0.1,
+        "prior.nominal": 0.2,
+        "rls.eta_0": [[1.0] + [0.0] * 4] * 8,
+    }
+    estimator = Estimator(c, values)
+    posterior, of_all = estimator.state.method.regression.posterior, kinds(estimator)
+    used = {of_all[i] for i in posterior.column[0 : posterior.information.size]}
+    groups = {
+        "HIGHER_POWER",
+        "SET_POWER",
+        "DEAD_ZONE",
+        "POSSIBLE_KNEE",
+        "HYSTERESIS",
+        "SIN_M",
+        "COS_M",
+    }
+    assert used == set(of_all) - groups
+
+
 COLUMNS_OF: dict[str, tuple[str, ...]] = {
     "prior.nominal": ("NOMINAL",),
     "prior.bias": ("BIAS",),

@@ -47,6 +47,7 @@ def test_defaults_are_those_of_the_paper_and_in_their_ranges(c: Library) -> None
         (2, "regression.bandwidth", 0.1, 0.0999),
         (1, "filter.V_min", 10.0, 10.1),  # V_max
         (1, "motor.gamma", -1.0, 0.0),
+        (1, "motor.gamma", 0.5, 0.0),
     ],
 )
 def test_limits_by_other_parameters(
