@@ -1,6 +1,7 @@
 """FilteredRegression, every output of every tick, against a second implementation.
 
-That one, in helpers/dense_*.py, has dense matrices in extended precision and the filters of scipy.
+The second implementation, in helpers/dense_*.py, has dense matrices in extended precision and the
+filters of scipy.
 Decisions compare a number with a threshold. In these runs the numbers are far from it, so that
 rounding errors decide nothing.
 """

@@ -1,4 +1,4 @@
-"""The signals of FilteredRegression: direction of motion from counts, and state-variable filter."""
+"""How FilteredRegression prepares signals: the direction of motion from counts, and the filters."""
 
 from typing import Any
 

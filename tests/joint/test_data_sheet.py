@@ -187,7 +187,7 @@ Read = Callable[[Path], Values]
 
 
 def from_matlab(path: Path) -> Values:
-    """Of a MATLAB function: what each line of it sets."""
+    """The variables that each line of a MATLAB function sets."""
     lines = path.read_text().splitlines()
     assert lines[0] == f"function p = {path.stem}" and lines[-1] == "end"
     found: Values = {}

@@ -94,7 +94,7 @@ def test_limits_keep_what_belongs_to_the_signal() -> None:
     low, high = limits(spiked)
     assert low == x.min() and x.max() < high < 3
     assert limits(np.array([np.nan])) == (0.0, 1.0)
-    step = np.append(np.zeros(10_000), 1.0)  # all but one are equal: it is the signal
+    step = np.append(np.zeros(10_000), 1.0)  # the one value that differs is the signal
     assert limits(step) == (0.0, 1.0)
 
 

@@ -124,7 +124,7 @@ def test_the_scheduler_is_lost(
     (line,) = errors.splitlines()
     assert line == (
         f"sigmahat: error: lost the connection to the scheduler at {address}; "
-        "the same command does the remaining runs"
+        "run the command again for what is left"
     )
     assert 3 <= len(records(out)) < 200
 

@@ -195,7 +195,7 @@ _LIKE = math.log(3.0)  # up to this factor, a ratio of inertias counts as the ge
 
 
 def inertia(seen: View, found: Fitted) -> Iterator[Finding]:
-    """A wrong inertia, or a wrong scale of the torque, if the log shows the error clearly."""
+    """Finds a wrong inertia or a wrong scale of the torque, where the log shows it clearly."""
     given = float(seen.every["motor.B"])
     B = _nearest(seen, found, given) if given > 0 else None
     if B is None or distance(B, given) < _DIFFERENT:

@@ -221,7 +221,9 @@ def _set_torque(port: PortGuess, roles: Roles) -> None:
         port.sign = -1
         notes["sign"] = "CHECK: else the motor would gain power from friction"
     elif roles.drive.sign == 0:
-        notes["sign"] = "CHECK: the log does not show it; 1 if a torque above 0 turns theta upwards"
+        notes["sign"] = (
+            "CHECK: the log does not show it; 1 if a positive torque increases theta, else -1"
+        )
     notes["gear_ratio"] = "CHECK: ratio of the gear if the torque is measured after the gear"
 
 

@@ -173,7 +173,8 @@ def _torques(columns: Sequence[Column], ports: Mapping[str, Role], T: float) -> 
     elif ports.keys() >= {"theta", "q"}:
         found |= _silent_torque([each for each in columns if each not in sensors], ports, T)
     if sensors:
-        why = "by its name" if sensors[0].meaning.side else "the motor has another torque, or none"
+        no_other = "the log has the torque of another motor, or none"
+        why = "by its name" if sensors[0].meaning.side else no_other
         found["tau_e_sensor"] = Role(max(sensors, key=_torque_points), why)
     return found
 

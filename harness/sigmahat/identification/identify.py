@@ -59,7 +59,7 @@ _V_A_HIGHEST = 0.1  # low pass of the velocity to compare with, in sampling freq
 
 
 def _unusable(samples: Samples, needed: float) -> str:
-    """Why no stretch of a log can be used, which needs so much time [s], and what to do."""
+    """Why no part of a log is usable, and what to do. A part must last `needed` [s]."""
     if samples.T > _SLOWEST:
         return (
             f"samples {samples.T:g} s apart do not show the motion of a joint, expected at most "

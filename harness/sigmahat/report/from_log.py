@@ -169,6 +169,6 @@ def estimator_table(sheet: Sheet) -> TextTable:
         for name, value in sheet.start_values.items()
         if not name.startswith("rls.eta_0")
     ]
-    note = "motor.B and motor.D_theta as they were found"
+    note = "motor.B and motor.D_theta are the estimated values"
     title = "Parameters of the estimator"
     return TextTable(title, ["parameter", "value"], rows, note=note, folded=True)

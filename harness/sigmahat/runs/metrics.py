@@ -32,7 +32,7 @@ class Index:
     field: str  # field of Indices
     symbol: str  # symbol in the paper
     unit: str
-    settled: bool  # whether the index leaves the start-up out
+    settled: bool  # whether this error index ignores the start-up
 
     def when(self, settled: float) -> str:
         """The part of a run that the index covers, in words; settled: end of the start-up [s]."""

@@ -121,5 +121,5 @@ def all_outcomes(
                     records.add(missing[place], outcome)
                 progress(1)
     except WorkersLostError as error:
-        raise WorkersLostError(f"{error}; the same command does the remaining runs") from error
+        raise WorkersLostError(f"{error}; run the command again for what is left") from error
     return [each for each in outcomes if each is not None]
