@@ -115,6 +115,10 @@ private:
 template <template <int> class Make> Recursion *start(int size, double P_0)
 {
     switch (size) {
+    case 3:
+        return new Make<3>(P_0);
+    case 6:
+        return new Make<6>(P_0);
     case 18:
         return new Make<18>(P_0);
     case 40:

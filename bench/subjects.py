@@ -19,7 +19,7 @@ from sigmahat.runs.scenario import Sine, T
 
 Array = NDArray[np.float64]
 
-SIZES = (18, 40)
+SIZES = (3, 6, 18, 40)
 MAKES = ("sigmahat", "eigen")
 """Recursions that compute an estimate."""
 JOINTS = 30
