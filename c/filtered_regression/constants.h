@@ -111,7 +111,9 @@
 #define SH_FASTER ((sh_real)5)
 /* Process noise of friction that drifts, in variances of its prior [1/s]. */
 #define SH_FRICTION_DRIFT ((sh_real)1e-3)
-/* Residual of drifting over that of constant friction, below and above which friction drifts [1]. */
+/* Residual of drifting over that of constant friction [1]: friction drifts below the first, and no longer above the
+ * second.
+ */
 #define SH_DRIFT_BEGINS ((sh_real)0.8)
 #define SH_DRIFT_ENDS ((sh_real)0.95)
 
@@ -160,7 +162,7 @@
 #define SH_REFIT_PAUSE ((sh_real)0.0101)
 /* Duration of a row for each step that a refit makes in a step of the row [s], and most of these steps [1]. There is
  * one in rows below 13 ms, and four from 26 ms on. With one there, too, a wrong choice of columns would last for 0.8 s
- * at 250 Hz. There are fewer steps than samples in a row.
+ * at 250 Hz. Rows of several samples have more samples than steps.
  */
 #define SH_TIME_OF_STEP ((sh_real)0.0065)
 #define SH_MOST_STEPS 4

@@ -544,7 +544,7 @@ static int tick_filtered_regression(sh_estimator *estimator, const sh_parameters
             return refuse(state, &before);
         }
     }
-    /* At each tick as long as there are no rows. */
+    /* At each tick as long as there are no rows, also behind a gap. */
     news = complete || (settled && state->row.w > 0) ? 0 : SH_NEW_VARIANCES;
     if (!complete || state->signals.decimation == 1) {
         news |= take_steps(state, p); /* 6. Estimate, data, misfit, choice of columns. */

@@ -50,7 +50,7 @@ static int choose_columns(const sh_regression_state *state, const sh_parameters 
     return size;
 }
 
-/* The weight of the data is 1 / kappa^2. In a trial it is 1 / max(1, q). */
+/* The weight of the data is 1 / kappa^2. In a trial it is 1 / misfit, which is max(1, q, q_recent). */
 void sh_refit_begin(sh_regression_state *state, const sh_parameters *p)
 {
     sh_refit *refit = &state->refit;

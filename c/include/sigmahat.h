@@ -115,8 +115,8 @@ enum { SH_MAX_BASIS = SH_MAX_N * SH_MAX_M };
 enum { SH_MAX_COLUMNS = SH_MAX_BASIS + 24 };
 #endif
 
-/* The linker knows this function by a name that contains the sizes above. So it finds no function
- * for a file that was compiled with other sizes than the library, whose structs differ.
+/* The linker knows this function by a name that contains the sizes above, as they are given to the compiler. So
+ * it finds no function for a file that was compiled with other sizes than the library.
  */
 #define sh_estimator_start SH_SIZED(sh_estimator_start, SH_REAL, SH_MAX_N, SH_MAX_M, SH_MAX_COLUMNS)
 #define SH_SIZED(name, real, n, m, columns) SH_JOINED(name, real, n, m, columns)
@@ -182,7 +182,8 @@ typedef struct {
 } sh_prior_parameters;
 
 /* Parameters. Those marked "fixed" must not change after sh_estimator_start. Every other one may
- * change between ticks, and has its effect from the next tick on.
+ * change between ticks, and has its effect from the next tick on. But the filters of FilteredRegression
+ * stay as modality, motor.B, motor.gamma and noise.tau were at the start.
  */
 typedef struct {
     sh_real samplePeriod; /* T [s], >= 1e-9, fixed */
@@ -241,7 +242,8 @@ typedef struct {
         sh_real drift;     /* share of its prior variance by which the torque curve drifts in a
                               second [1/s], 0..1e12; 0: it does not change */
         sh_real memory;    /* time constant with which data are forgotten while they contradict
-                              the model [s], 0..1e12; 0: the misfit has no effect */
+                              the model [s], 0..1e12; 0: neither does a misfit make the
+                              estimate less certain, nor is a change detected */
         int decimation;    /* samples of a row of the regression, 0..64, fixed; 0: as many as the
                               bandwidth allows */
     } regression;
@@ -261,7 +263,7 @@ typedef struct {
 } sh_measurement;
 
 /* The outputs of a tick. An output that would overflow is limited to 1e300 in magnitude, or 1e38 in single
- * precision; only sigma_std is infinite in this case.
+ * precision; only sigma_std and tau_e_std are infinite in this case.
  */
 typedef struct {
     sh_real sigma;                   /* stiffness, (23): slope of the torque where the spring is
@@ -365,8 +367,8 @@ int sh_estimator_tick(sh_estimator *estimator, const sh_parameters *p, const sh_
 
 /* Evaluates the present estimate at any deformation, (21) and (23). Nothing is learned, and the
  * estimator does not change. A tick gives the same numbers for its own phi and setPoint. But with
- * SH_METHOD_FILTERED_REGRESSION the standard deviations of a tick may belong to a deformation up to
- * 2.5 / w before. Here w is the corner frequency of the filters.
+ * SH_METHOD_FILTERED_REGRESSION the standard deviations of a tick may belong to the deformation of the last
+ * row. This is up to regression.decimation samples, or 2.5 / w, before; w is the corner frequency of the filters.
  *
  * p         parameters that pass sh_parameters_check; the fixed ones as they were at the start
  * phi       deformation [rad]

@@ -117,7 +117,8 @@ typedef struct {
 typedef struct {
     short kind;    /* of the table in columns.c */
     short i, j;    /* power of the torque: its coefficient is eta[i][j]; damping: power j of the
-                      set-point; dead zone and hysteresis: half width i; else 0 */
+                      set-point; dead zone and hysteresis: half width i; knee:
+                      number i of its place; else 0 */
     sh_real prior; /* std deviation of its coefficient, by which the column is multiplied */
     sh_real unit;  /* power of the torque: its coefficient times this is that of sh_estimate */
     sh_real place; /* half width of dead zone or hysteresis, or place of a knee, over range.phi */
@@ -311,7 +312,7 @@ typedef struct {
     sh_real per_gain[SH_MAX_COLUMNS]; /* its change with the relative gain of the torque */
     sh_variances variances;           /* of the torque of the spring [(N.m)2], and of the stiffness
                                          [(N.m/rad)2], if the gain is right */
-    sh_real y;                        /* of the sample, as it was fitted [N.m] */
+    sh_real y;                        /* of this tick, less the error of the last row [N.m] */
     sh_real sigma;                    /* stiffness [N.m/rad] */
     sh_real delay;                    /* of the torque [s] */
     sh_real viscous, inertia;         /* relative errors of motor.D_theta and motor.B [1] */
