@@ -76,10 +76,8 @@ void fmi2FreeInstance(fmi2Component c)
 fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean toleranceDefined, fmi2Real tolerance,
                                fmi2Real startTime, fmi2Boolean stopTimeDefined, fmi2Real stopTime)
 {
-    (void)toleranceDefined; /* the tolerance has no effect */
-    (void)tolerance;
-    return (fmi2Status)sh_set_up(c, startTime, stopTimeDefined ? stopTime : INFINITY,
-                                 "fmi2SetupExperiment");
+    return (fmi2Status)sh_set_up(c, toleranceDefined ? tolerance : 0.0, startTime,
+                                 stopTimeDefined ? stopTime : INFINITY, "fmi2SetupExperiment");
 }
 
 /* A function whose arguments the shell takes as they are. */

@@ -78,9 +78,8 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance instance, fmi3Boolean tolera
 {
     static const char function[] = "fmi3EnterInitializationMode";
 
-    (void)toleranceDefined; /* the tolerance has no effect */
-    (void)tolerance;
-    if (sh_set_up(instance, startTime, stopTimeDefined ? stopTime : INFINITY, function) != SH_OK) {
+    if (sh_set_up(instance, toleranceDefined ? tolerance : 0.0, startTime,
+                  stopTimeDefined ? stopTime : INFINITY, function) != SH_OK) {
         return fmi3Error;
     }
     return (fmi3Status)sh_begin_initialization(instance, function);

@@ -61,11 +61,18 @@ sh_status sh_initialize(sh_instance *instance)
     return SH_OK;
 }
 
-sh_status sh_set_up(void *handle, double start_time, double stop_time, const char *function)
+sh_status sh_set_up(void *handle, double tolerance, double start_time, double stop_time,
+                    const char *function)
 {
     sh_instance *instance = sh_enter(handle, SH_INSTANTIATED, function);
 
     if (instance == NULL) {
+        return SH_ERROR;
+    }
+    if (!(tolerance >= 0.0 && isfinite(tolerance))) {
+        sh_report(instance, SH_ERROR,
+                  "%s: tolerance = %.9g; expected a finite number, not below 0.", function,
+                  tolerance);
         return SH_ERROR;
     }
     if (!isfinite(start_time)) {

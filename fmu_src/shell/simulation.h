@@ -50,9 +50,11 @@ void sh_release(const sh_importer *importer, void *memory);
 /* The course of a simulation. `handle` is from the importer, and may be NULL. */
 
 /* Start and end of the experiment that the importer announces [s]; without an end, it is infinite.
- * Refuses times that are not finite or in the wrong order.
+ * Refuses times that are not finite or in the wrong order, and a tolerance that is negative or not finite;
+ * else the tolerance has no effect, and is 0 if the importer gives none.
  */
-sh_status sh_set_up(void *handle, double start_time, double stop_time, const char *function);
+sh_status sh_set_up(void *handle, double tolerance, double start_time, double stop_time,
+                    const char *function);
 
 sh_status sh_begin_initialization(void *handle, const char *function);
 sh_status sh_end_initialization(void *handle, const char *function);

@@ -484,6 +484,8 @@ def test_messages_show_texts_of_the_importer_in_ascii() -> None:
     [
         ("startTime", {"start": math.inf}),
         ("stopTime = -1 is before startTime = 0", {"stop": -1.0}),
+        ("tolerance = ", {"tolerance": -1e-6}),
+        ("tolerance = ", {"tolerance": math.inf}),
         ("stopTime", {"stop": math.nan}),
     ],
 )

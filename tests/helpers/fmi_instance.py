@@ -103,9 +103,14 @@ class _Instance:
     def get_all(self, names: Sequence[str]) -> list[float]:
         return [self.get(name) for name in names]
 
-    def enter(self, start: float = 0.0, stop: float | None = None) -> int:
+    def enter(
+        self, start: float = 0.0, stop: float | None = None, tolerance: float | None = None
+    ) -> int:
         """Tells the experiment and enters initialisation mode."""
-        return self.begin(0, REAL(0.0), REAL(start), int(stop is not None), REAL(stop or 0.0))
+        return self.begin(
+            *(int(tolerance is not None), REAL(tolerance or 0.0), REAL(start)),
+            *(int(stop is not None), REAL(stop or 0.0)),
+        )
 
     def begin(self, *experiment: Any) -> int:
         """Enters initialisation mode with the arguments of an experiment."""
