@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from conan import ConanFile
+from conan.errors import ConanInvalidConfiguration
 from conan.tools.cmake import CMake, CMakeToolchain, cmake_layout
 from conan.tools.files import copy, load
 
@@ -40,15 +41,27 @@ class SigmahatConan(ConanFile):  # type: ignore[misc] # Conan has no types
             copy(self, name, str(above), self.export_sources_folder)
         copy(self, "*", self.recipe_folder, str(Path(self.export_sources_folder) / "c"))
 
+    def _sizes(self) -> dict[str, str]:
+        """The options that are given, by name."""
+        values = {size: str(self.options.get_safe(size)) for size in SIZES}
+        return {size: value for size, value in values.items() if value != "None"}
+
+    def validate(self) -> None:
+        """A size is a whole number from 1 on."""
+        for size, value in self._sizes().items():
+            if not re.fullmatch(r"[1-9]\d*", value):
+                raise ConanInvalidConfiguration(
+                    f"{size}: expected a whole number from 1 on, received {value}"
+                )
+
     def layout(self) -> None:
         """Folders as Conan's CMake has them."""
         cmake_layout(self)
 
     def _definitions(self) -> dict[str, str]:
         """What the library and every file that includes sigmahat.h are compiled with."""
-        sizes = {macro: str(self.options.get_safe(size)) for size, macro in SIZES.items()}
-        given = {macro: value for macro, value in sizes.items() if value != "None"}
-        return given | ({"SH_REAL": "float"} if self.options.real == "float" else {})
+        sizes = {SIZES[size]: value for size, value in self._sizes().items()}
+        return sizes | ({"SH_REAL": "float"} if self.options.real == "float" else {})
 
     def generate(self) -> None:
         """The options become variables of CMakeLists.txt."""
