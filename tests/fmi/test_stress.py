@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from c_programs import compile_driver
+from c_programs import compile_driver, compiler_with
 from controllers import run
 from fmi_functions import write_calls
 from gate import need
@@ -33,8 +33,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_instances_in_threads_do_not_influence_each_other(
     fmu: str, version: str, build: Path, folder: Path
 ) -> None:
-    program = compile_driver("instances", fmu, version, build, folder, need("clang"), THREAD)
-    assert run(program) == ""
+    compiler = compiler_with(THREAD, folder)
+    assert run(compile_driver("instances", fmu, version, build, folder, compiler, THREAD)) == ""
 
 
 @pytest.mark.slow("valgrind executes the runs of some instances, tens of times slower")
@@ -42,7 +42,9 @@ def test_instances_in_threads_do_not_influence_each_other(
 def test_valgrind_finds_nothing(fmu: str, version: str, build: Path, folder: Path) -> None:
     valgrind = need("valgrind")
     flags = ("-pthread",)
-    program = compile_driver("instances", fmu, version, build, folder, need("clang"), flags)
+    program = compile_driver(
+        "instances", fmu, version, build, folder, compiler_with(flags, folder), flags
+    )
     leaks = ["--leak-check=full", "--show-leak-kinds=all", "--errors-for-leak-kinds=all"]
     assert run(valgrind, "-q", "--error-exitcode=1", *leaks, program) == ""
 
@@ -50,7 +52,7 @@ def test_valgrind_finds_nothing(fmu: str, version: str, build: Path, folder: Pat
 @pytest.mark.slow("the fuzzer has a fixed time to try inputs")
 def test_fuzzer_finds_nothing(build: Path, folder: Path) -> None:
     """An estimator and a plant at the same time, each in one version, for ten seconds."""
-    compiler = need("clang")
+    compiler = compiler_with(FUZZER, folder)
     # Long sequences from the first second on: short ones do not get far.
     lengths = ["-max_len=512", "-len_control=0"]
     options = ["-max_total_time=10", *lengths, "-timeout=20", f"-artifact_prefix={folder}/"]

@@ -1,5 +1,10 @@
-"""The programs of `drivers/`, each linked with the sources of one FMU."""
+"""The programs of `drivers/`, each linked with the sources of one FMU.
 
+If a compiler or a checker is missing, the test is skipped. In the gate, which sets SIGMAHAT_GATE=1,
+it fails.
+"""
+
+import shutil
 import subprocess
 import tempfile
 from functools import cache
@@ -8,6 +13,7 @@ from pathlib import Path
 from c_sources import FOLDERS, REPOSITORY, SOURCES
 from fmi_functions import HEADERS
 from fmi_runs import ESTIMATORS
+from gate import missing
 
 FMU_SOURCES = REPOSITORY / "fmu_src"
 PLANT_SOURCES = ("plant.c", "radau.c", "noise.c")
@@ -55,3 +61,29 @@ def compile_driver(
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     return program
+
+
+@cache
+def _works(compiler: str, flags: tuple[str, ...], folder: Path, text: str) -> bool:
+    source = folder / "probe.c"
+    source.write_text(text)
+    build = [compiler, *flags, str(source), "-o", str(folder / "probe")]
+    run = [str(folder / "probe"), "-runs=1"]
+    return all(
+        subprocess.run(command, capture_output=True, cwd=folder).returncode == 0
+        for command in (build, run)
+    )
+
+
+def compiler_with(flags: tuple[str, ...], folder: Path) -> str:
+    """A compiler that can build programs with these flags that run; a runtime may be missing."""
+    text = "int main(void) { return 0; }\n"
+    if any("fuzzer" in flag for flag in flags):
+        text = "int LLVMFuzzerTestOneInput(void) { return 0; }\n"
+    for compiler in ("clang", "gcc"):
+        if shutil.which(compiler) and _works(compiler, flags, folder, text):
+            return compiler
+    missing(
+        f"a compiler that builds programs with {' '.join(flags) or 'no options'}",
+        "apt-get install clang libclang-rt-dev",
+    )

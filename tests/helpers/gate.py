@@ -16,7 +16,6 @@ _PACKAGES = {
     "c++": "g++",
     "cc": "gcc",
     "chromedriver": "chromium-driver",
-    "clang": "clang libclang-rt-dev",
     "clang++": "clang",
     "frama-c": "frama-c-base",
     "ip": "iproute2",
