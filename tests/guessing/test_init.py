@@ -57,6 +57,20 @@ def test_a_file_is_not_overwritten(shell: Shell) -> None:
     shell.run("init log.csv --force")
 
 
+def test_names_of_several_lines_stay_comments(shell: Shell) -> None:
+    name = "a\nmotor.B = 9 #.parquet"
+    log = {
+        "t": T,
+        "a\nmotor.B = 9 #": MOTION,
+        **{f"x\ny = 9 #{k}": v for k, v in LOG.items() if k != "t"},
+    }
+    write_log(log, Path(name))
+    shell.run(f"init '{name}' --config log.toml")
+    found = read()
+    assert {*found} == {"time", "ports", "parameters"}
+    assert found["parameters"]["motor"]["B"] != 9
+
+
 def test_no_column_that_looks_like_a_port(shell: Shell) -> None:
     """A skeleton, with every column and its range."""
     write_log({"x": np.arange(9.0) % 4, "note": np.array(list("abcdefghi"))}, Path("log.csv"))

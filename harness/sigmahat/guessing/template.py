@@ -147,6 +147,7 @@ def _scale_of(set_point: PortGuess) -> float:
 _TEMPLATES = environment(Path(__file__).parent, autoescape=False).overlay(
     trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True
 )
+_TEMPLATES.filters["one_line"] = lambda text: " ".join(text.splitlines())
 _TEMPLATES.globals |= {
     "MEANINGS": MEANINGS,
     "UNITS": configuration.PORTS,
