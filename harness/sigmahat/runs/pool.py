@@ -36,7 +36,7 @@ def spread(
     Raises what a job raises, and WorkersLostError if a process was ended from outside. Closing
     the generator cancels the jobs that have not begun.
     """
-    workers = min(len(jobs), processes or os.cpu_count() or 1)
+    workers = max(min(len(jobs), processes or os.cpu_count() or 1), 1)
     context = multiprocessing.get_context("spawn")
     executor = ProcessPoolExecutor(workers, mp_context=context, initializer=_end_with_the_parent)
     try:

@@ -111,10 +111,9 @@ def all_outcomes(
     missing = [run for run, found in zip(plan.runs, outcomes, strict=True) if found is None]
     progress(plan.count - len(missing))
     jobs = [partial(execute, run, identity(run)) for run in missing]
-    if not jobs:
-        return [each for each in outcomes if each is not None]
+    done = spread_on_cluster(jobs, scheduler) if scheduler and jobs else spread(jobs)
     try:
-        with closing(spread_on_cluster(jobs, scheduler) if scheduler else spread(jobs)) as done:
+        with closing(done):
             for place, outcome in done:
                 outcomes[missing[place].number] = outcome
                 if outcome.failure is None:
