@@ -174,6 +174,13 @@ def test_fewer_points_of_a_long_signal_keep_every_peak(samples: int) -> None:
     for value in (x.max(), x.min()):
         (at,) = t[x == value]
         assert np.abs(reduced.t[shown == value] - at).min() <= width
+    # Around the middle there is every sample.
+    first, last = reduced.whole or (t[0], t[-1])
+    inside = (t >= first) & (t <= last)
+    start = int(np.searchsorted(reduced.t, first))
+    middle = slice(start, start + int(np.count_nonzero(inside)))
+    assert np.array_equal(reduced.t[middle], t[inside])
+    assert np.array_equal(shown[middle], x[inside])
 
 
 @pytest.mark.parametrize(

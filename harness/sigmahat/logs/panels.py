@@ -25,22 +25,33 @@ class Reduced:
     signals: dict[str, NDArray[Any]]  # signals, with the shape of t
     bucket: int
     """Number of samples from which minimum and maximum are kept; 1: every sample is kept."""
+    whole: tuple[float, float] | None = None
+    """Between these times every sample is kept, although the others are reduced."""
 
 
 def reduce(t: NDArray[Any], signals: Mapping[str, NDArray[Any]], budget: int = BUDGET) -> Reduced:
     """Keeps at most about budget values of all signals, and 20000 of each.
 
-    Of a longer signal, the minimum and the maximum of each bucket are kept, at its first time.
-    t and the signals have the same shape (N,), N >= 1.
+    Of a longer signal, half of the kept values are all samples around the middle, where single
+    counts of an encoder show. The other half are minimum and maximum of each bucket, at its first
+    time. t and the signals have the same shape (N,), N >= 1.
     """
-    rows = min(max(budget // max(len(signals), 1), 8), _MOST)
+    half = min(max(budget // max(len(signals), 1), 8), _MOST) // 2
     t = np.asarray(t, dtype=np.float64)
-    bucket = 1 if len(t) <= rows else -(-2 * len(t) // rows)
+    if len(t) <= 2 * half:
+        short = {name: np.asarray(signal, dtype=np.float32) for name, signal in signals.items()}
+        return Reduced(t, short, 1)
+    bucket = -(-2 * (len(t) - half) // half)
+    first = (len(t) - half) // 2
+    last = first + half
     reduced = {}
     for name, signal in signals.items():  # one after the other, for the memory
-        values = np.asarray(signal, dtype=np.float32)
-        reduced[name] = values if bucket == 1 else extremes(values, bucket)
-    return Reduced(t if bucket == 1 else np.repeat(t[::bucket], 2), reduced, bucket)
+        x = np.asarray(signal, dtype=np.float32)
+        parts = extremes(x[:first], bucket), x[first:last], extremes(x[last:], bucket)
+        reduced[name] = np.concatenate(parts)
+    before, after = (np.repeat(each[::bucket], 2) for each in (t[:first], t[last:]))
+    times = np.concatenate([before, t[first:last], after])
+    return Reduced(times, reduced, bucket, (float(t[first]), float(t[last - 1])))
 
 
 Band = tuple[NDArray[Any], NDArray[Any]]
@@ -152,7 +163,14 @@ def sampling(reduced: Reduced) -> list[str]:
     """The samples that the plots show, in words."""
     if reduced.bucket == 1:
         return ["Every sample is in the plots: zoom in until single counts of the encoders show."]
-    return [f"The plots have the least and the greatest of every {reduced.bucket} samples."]
+    ends = f"the least and the greatest of every {reduced.bucket} samples"
+    if reduced.whole is None:
+        return [f"The plots have {ends}."]
+    first, last = reduced.whole
+    return [
+        f"Every sample is in the plots from {first:.6g} s to {last:.6g} s, the shaded part: zoom in"
+        f" there until single counts of the encoders show. Elsewhere, plots have {ends}."
+    ]
 
 
 def _of_side(side: str) -> str:

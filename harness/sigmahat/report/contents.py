@@ -36,6 +36,8 @@ class Contents:
     answer: Sequence[Panel] = ()  # panels above all other panels, and above the tables
     notes: Sequence[str] = ()  # sentences about the processing of the samples
     marks: Sequence[float] = ()  # times of dotted lines in the panels over time [s]
+    whole: tuple[float, float] | None = None
+    """Times between which every sample of longer signals is drawn [s]."""
 
 
 def number(value: object) -> str:

@@ -71,6 +71,7 @@ def from_log(folder: Path) -> Contents:
         answer=list(curve_panels(curve, points)),
         notes=[*log.notes, *sampling(reduced)],
         marks=log.changes,
+        whole=reduced.whole,
     )
 
 

@@ -50,6 +50,7 @@ def from_reproduction(folder: Path) -> Contents:
         [indices],
         [*stiffness_panels(reduced, estimates), *quantities],
         notes=sampling(reduced),
+        whole=reduced.whole,
     )
 
 
@@ -99,7 +100,7 @@ def report(folder: Path) -> str:
 
 def _page(contents: Contents) -> str:
     panels, first = [*contents.answer, *contents.panels], len(contents.answer)
-    script, divs = components(plots(panels, contents.marks)) if panels else ("", [])
+    script, divs = components(plots(panels, contents.marks, contents.whole)) if panels else ("", [])
     shown = list(zip(range(len(panels)), panels, divs, strict=True))
     page = environment(Path(__file__).parent).get_template("page.html")
     return page.render(

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 from bokeh.models import (
+    BoxAnnotation,
     BoxZoomTool,
     ColumnDataSource,
     PanTool,
@@ -28,8 +29,12 @@ from sigmahat.plotting.style import around
 _HEIGHT, _GREY = 300, "#888888"
 
 
-def plots(panels: Sequence[Panel], marks: Sequence[float] = ()) -> list[figure]:
-    """The plots of panels; linked plots have dotted lines at `marks`.
+def plots(
+    panels: Sequence[Panel],
+    marks: Sequence[float] = (),
+    whole: tuple[float, float] | None = None,
+) -> list[figure]:
+    """The plots of panels; linked plots have dotted lines at `marks`, and `whole` shaded.
 
     All models of curve j of panel i have the name trace-i-j: page.html switches them by it.
     """
@@ -40,6 +45,9 @@ def plots(panels: Sequence[Panel], marks: Sequence[float] = ()) -> list[figure]:
     made = []
     for i, panel in enumerate(panels):
         plot = _figure(panel, linked)
+        if panel.linked and whole is not None:
+            low, high = whole
+            plot.add_layout(BoxAnnotation(left=low, right=high, fill_color=_GREY, fill_alpha=0.12))
         for mark in marks if panel.linked else ():
             style = {"line_dash": "dotted", "line_color": _GREY}
             plot.add_layout(Span(location=mark, dimension="height", **style))
