@@ -280,6 +280,10 @@ def test_a_torque_that_is_only_noise_is_noted() -> None:
     for hold, noted in ((0.0, True), (0.05, False)):
         found = checked(log_by_hand(hold), RIGHT)
         assert (Kind.NO_TORQUE in [each.kind for each in found.findings]) is noted
+    # WHEN B is not known either, the stiffness is negative, which says nothing of a sign
+    text = RIGHT.replace("motor.B = 1.05e-4\n", "").replace("prior.B = 0.1", "prior.B = 1000")
+    found = checked(log_by_hand(0.0), text)
+    assert not any(each.about == "NegativeStiffness" for each in found.findings)
 
 
 def test_the_command(shell: Shell) -> None:

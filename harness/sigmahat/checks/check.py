@@ -12,6 +12,7 @@ from sigmahat.checks.columns import at_rest, columns
 from sigmahat.checks.dynamics import dynamics
 from sigmahat.checks.findings import Checked, Finding, Kind, Severity
 from sigmahat.checks.relation import relation, slope_of
+from sigmahat.checks.text import DOUBTS
 from sigmahat.checks.view import View, all_parameters, view
 from sigmahat.fmi.instance import FmuError, Slave, Value, installed
 from sigmahat.identification.noise import variance
@@ -19,14 +20,19 @@ from sigmahat.identification.quantities import WIDE
 from sigmahat.logs.configuration import PORTS, Configuration
 from sigmahat.logs.data_sheet import absent, exact
 from sigmahat.logs.log import Log, LogError
-from sigmahat.logs.replay import parameters
+from sigmahat.logs.replay import parameters, play
 
 _INERTIA = (Kind.INERTIA, Kind.TORQUE_SCALE)
+_MISFIT = 3.0  # of the model; unmodelled effects of real joints cause up to about 2
 _NOISE = 3.0  # ratio of standard deviations, measured to configured
+_LEARNED = 0.5
+_DOUBTED = 0.5  # fraction of the second half
 _ROOM = 1.2  # ratio of a proposed range to the largest value
 _WIDE = 5.0  # a range is too wide from this ratio to the largest value
 _ERROR = 100  # a contradiction counts more than all notes together
 _TORQUE = 3.0  # ratio of torques, measured to configured
+
+Outputs = Mapping[str, np.ndarray[Any, Any]]
 
 
 def check(log: Log, configuration: Configuration) -> Checked:
@@ -40,12 +46,20 @@ def check(log: Log, configuration: Configuration) -> Checked:
     fmu = installed("StiffnessEstimator")
     seen = view(log, configuration)
     findings = _swapped(seen) or [_tried(seen, each) for each in _contradictions(seen)]
+    # The warnings of the FMU are findings here.
     with Slave(fmu, "check") as slave, slave.only_errors():
-        slave.initialize(parameters(fmu, configuration))  # it refuses values that do not fit
+        slave.initialize(parameters(fmu, configuration))
+        (outputs,) = play(slave, seen.samples, len(seen.samples.values))
     if not any(each.severity is Severity.WRONG for each in findings):
-        # After a wrong value, these are only consequences of this value.
-        findings += [*_range(seen), *_noise(seen)]
-    findings += _rests_on(seen, fmu.parameters({}))
+        # After a wrong value, the findings of the replay are only consequences of this value.
+        replayed = _replayed(seen, outputs)
+        if any(each.kind is Kind.NO_TORQUE for each in findings):
+            # Without a torque, a negative stiffness says nothing of a sign.
+            replayed = (each for each in replayed if each.about != "NegativeStiffness")
+        findings += replayed
+    is_regression = seen.every["method"] == "FilteredRegression"
+    per_gain = float(outputs["sigma_per_gain"][-1]) if is_regression else 1.0
+    findings += _rests_on(seen, fmu.parameters({}), per_gain)
     order = list(Severity)
     findings.sort(key=lambda each: order.index(each.severity))
     return Checked(findings, len(seen.samples.values), seen.T)
@@ -180,17 +194,18 @@ def _gears(seen: View) -> Iterator[Finding]:
         yield Finding(Kind.GEAR, Severity.WRONG, key, other[1], "", right, right, [other], name)
 
 
-def _rests_on(seen: View, start: Mapping[str, Value]) -> Iterator[Finding]:
+def _rests_on(seen: View, start: Mapping[str, Value], per_gain: float) -> Iterator[Finding]:
     """Assumptions about ports and motor that no log can verify.
 
-    start  start values of the FMU
+    start     start values of the FMU
+    per_gain  relative change of the stiffness per relative change of the gain of the torque
     """
     every, given = seen.every, seen.configuration.ports
     tau = given.get("tau")
     is_current = tau is not None and tau.torque_constant is not None
     key = "ports.tau.torque_constant" if is_current else "prior.torque_gain"
     gain = float(every["prior.torque_gain"])
-    yield Finding(Kind.TORQUE_GAIN, Severity.RESTS_ON, key, gain, "", gain)
+    yield Finding(Kind.TORQUE_GAIN, Severity.RESTS_ON, key, per_gain, "", gain)
     if {"theta", "q"} <= given.keys():
         theta, q = (f"{name} in {given[name].unit or PORTS[name]}" for name in ("theta", "q"))
         yield Finding(
@@ -210,23 +225,30 @@ def _rests_on(seen: View, start: Mapping[str, Value]) -> Iterator[Finding]:
         yield Finding(Kind.ABSENT, Severity.RESTS_ON, f"prior.{name}", 0.0, "", about=name)
 
 
-def _range(seen: View) -> Iterator[Finding]:
-    """Deformation and torque beyond their ranges, or a range that is much too wide."""
+def _replayed(seen: View, outputs: Outputs) -> Iterator[Finding]:
+    """What the estimator itself reports when the log is replayed."""
+    yield from _range(seen, outputs)
+    yield from _noise(seen)
+    valid = outputs["valid"]
+    learned = float(np.mean(valid & (outputs["a"] > 0)))
+    if learned < _LEARNED:
+        yield Finding(Kind.LEARNED, Severity.NOTE, "time.longest_gap", learned, "", 1.0)
+    if seen.every["method"] == "FilteredRegression":
+        yield from _claims(outputs)
+
+
+def _range(seen: View, outputs: Outputs) -> Iterator[Finding]:
     every, known = seen.every, seen.configuration.parameters
-    if every["method"] != "FilteredRegression" or not seen.pieces:
-        return
-    phi, torque = (
-        max(float(np.max(np.abs(signal))) for signal in signals)
-        for signals in zip(*((piece.phi, piece.tau) for piece in seen.pieces), strict=True)
-    )
-    given = float(every["range.phi"])
+    is_regression = every["method"] == "FilteredRegression"
+    phi, given = float(np.max(np.abs(outputs["phi"]))), float(every["range.phi"])
     # A value that identify will set is no finding before identify has run.
-    if "range.phi" in known and not given / _WIDE < phi < given:
+    if is_regression and "range.phi" in known and not given / _WIDE < phi < given:
         severity = Severity.WRONG if phi > _ROOM * given else Severity.NOTE
         proposed = float(f"{_ROOM * phi:.3g}")
         yield Finding(Kind.RANGE, severity, "range.phi", phi, "rad", given, proposed)
+    torque = max((float(np.max(np.abs(p.tau))) for p in seen.pieces), default=0.0)
     torque, given, key = abs(seen.gamma) * torque, float(every["prior.tau_e"]), "prior.tau_e"
-    if key in known and torque > _TORQUE * given > 0:
+    if is_regression and key in known and torque > _TORQUE * given > 0:
         proposed = float(f"{_ROOM * torque:.3g}")
         yield Finding(Kind.RANGE, Severity.WRONG, key, torque, "N.m", given, proposed)
 
@@ -242,3 +264,15 @@ def _noise(seen: View) -> Iterator[Finding]:
     if given > 0 and noise > 0 and not 1 / _NOISE < noise / given < _NOISE:
         proposed = float(f"{noise:.3g}")
         yield Finding(Kind.NOISE, Severity.NOTE, key, noise, "N.m", given, proposed)
+
+
+def _claims(outputs: Outputs) -> Iterator[Finding]:
+    """Misfit of the model, and doubts that the estimator reports often."""
+    misfit = float(outputs["misfit"][-1])
+    if misfit > _MISFIT:
+        yield Finding(Kind.MISFIT, Severity.NOTE, "rls.n", misfit, "", 1.0)
+    doubts = outputs["doubt"][len(outputs["doubt"]) // 2 :]
+    for item, (key, _) in DOUBTS.items():
+        share = float(np.mean(doubts == item))
+        if share > _DOUBTED and not (item == "Misfit" and misfit > _MISFIT):
+            yield Finding(Kind.DOUBT, Severity.NOTE, key, share, "", 0.0, about=item)

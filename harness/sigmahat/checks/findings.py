@@ -39,7 +39,10 @@ class Kind(Enum):
     SATURATION = "saturation of the torque"
     NO_TORQUE = "torque that is only noise"
     NOISE = "prediction error and noise"
+    MISFIT = "misfit of the model"
+    DOUBT = "reasons of doubt"
     RANGE = "range of the deformation"
+    LEARNED = "share of ticks that learned"
     TORQUE_GAIN = "gain of the torque"
     EXACT = "motor data taken as exact"
     ABSENT = "effects taken as absent"
@@ -62,7 +65,7 @@ class Finding:
     others: Sequence[tuple[str, Proposal | None]] = ()
     """Other keys that would explain the finding, each key with the value required."""
     about: str = ""
-    """Detail of the kind: a port, or a parameter of the FMU."""
+    """Detail of the kind: a port, a parameter of the FMU, or an item of the FMU's output doubt."""
 
     @property
     def keys(self) -> Sequence[str]:

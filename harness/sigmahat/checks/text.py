@@ -11,6 +11,19 @@ TITLES = {
     Severity.NOTE: "worth a look:",
     Severity.RESTS_ON: "assumptions that no log can verify:",
 }
+DOUBTS = {
+    "NotExcited": ("ports.q.column", "the motion was too small or too short"),
+    "Misfit": ("rls.n", "the log contradicts the model"),
+    "OutOfRange": ("range.phi", "the deformation is far beyond range.phi"),
+    "FrictionOutsidePrior": (
+        "motor.D_theta",
+        "friction is further from motor.D_theta than prior.D_theta, or below 0",
+    ),
+    "InertiaOutsidePrior": ("motor.B", "the inertia is further from motor.B than prior.B allows"),
+    "NegativeStiffness": ("ports.q.sign", "the stiffness found is negative"),
+    "Change": ("rls.n", "the stiffness seems to change"),
+}
+"""Items of the FMU's output doubt: the key to look at, and what it says."""
 
 
 def summary(checked: Checked) -> str:
@@ -74,6 +87,7 @@ def _what(f: Finding) -> str:
         ratio=f.measured / f.expected if f.expected else math.nan,
         gear=f"the gear ratio of {f.about}" if f.key == "motor.gamma" else "motor.gamma",
         given=f.expected,
+        reason=DOUBTS.get(f.about, ("", f.about))[1],
         effect=WORDS.get(f.about, ""),
         gain=f"known to {100 * f.expected:.3g} %" if f.expected else "taken as exact",
     )
@@ -120,8 +134,12 @@ _SENTENCES: Mapping[Kind, str] = {
     Kind.NO_TORQUE: "the torque is only noise ({measured}): the motor is off, or the column is "
     "wrong. The stiffness then rests on motor.B, motor.D_theta and the Coulomb friction alone",
     Kind.NOISE: "the noise of the torque is {measured}, the configuration says {expected}",
+    Kind.MISFIT: "the errors of the model are {value:.3g} times as large as noise explains",
+    Kind.DOUBT: "not confident in {percent} of the second half: {reason}",
     Kind.RANGE: "the log has up to {measured}, the configuration {expected} (identify sets it)",
-    Kind.TORQUE_GAIN: "gain of the torque, {gain}; an error of it is an error of the stiffness",
+    Kind.LEARNED: "the estimator learned at {percent} of the ticks only",
+    Kind.TORQUE_GAIN: "gain of the torque, {gain}; 1 % of it changes the stiffness by "
+    "{value:.3g} %",
     Kind.EXACT: "motor.{about} = {value:.4g} is taken as exact",
     Kind.ABSENT: "no {effect} is assumed",
 }

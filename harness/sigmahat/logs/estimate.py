@@ -256,18 +256,9 @@ def _second_half(result: Estimate) -> Iterator[str]:
     yield f"  prediction error RMS  {result.epsilon_rms:10.4g} N.m ({relative} of the torque)"
     if result.parameters["method"] == "FilteredRegression":
         yield from (f"  {each.in_words}" for each in result.changes)
-        doubted = 100 * (1 - result.confident)
-        yield f"  not confident         {doubted:10.3g} % of the time{_why(result)}"
-
-
-def _why(result: Estimate) -> str:
-    """The reasons of doubt, and what the most frequent one means."""
-    if not result.doubt:
-        return ""
-    shares = ", ".join(f"{item} {100 * share:.3g} %" for item, share in result.doubt.items())
-    items = installed("StiffnessEstimator").variable("doubt").declaredType.items
-    meaning = {item.name: item.description for item in items}
-    return f" ({shares}); {meaning[max(result.doubt, key=result.doubt.__getitem__)]}"
+        reasons = ", ".join(f"{item} {100 * share:.3g} %" for item, share in result.doubt.items())
+        why = f" ({reasons})" if reasons else ""
+        yield f"  not confident         {100 * (1 - result.confident):10.3g} % of the time{why}"
 
 
 def _found(result: Estimate) -> Iterator[str]:
@@ -282,9 +273,7 @@ def _found(result: Estimate) -> Iterator[str]:
         for name, std in priors(result.parameters).items()
         if abs(value := result.joint[f"{name}_hat"]) > _NEGLIGIBLE * std
     ]
-    effects = ", ".join([f"misfit of the model {result.misfit:.3g}", *others])
-    by_gain = f"1 % of the torque's gain changes the stiffness by {result.sigma_per_gain:.3g} %"
-    yield f"of the joint: {effects}; {by_gain}"
+    yield f"of the joint: {', '.join([f'misfit of the model {result.misfit:.3g}', *others])}"
 
 
 JOINTS = "joints.csv"
