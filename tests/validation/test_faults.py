@@ -56,10 +56,13 @@ def test_a_counter_that_begins_in_another_turn(shell: Shell) -> None:
     assert moved in found["notes"]
     value, half = found["stiffness of this log [N.m/rad]"]
     assert abs(value - KNEE["spring.k_1"]) < half < 50
-    # THEN without range.phi nothing is moved, for nobody knows how large the deformation may be
+    # THEN without range.phi nothing is moved, for nobody knows how large the deformation may be,
+    # but what was seen is named with the key
     found = validate(shell, WRAPPED.replace("range.phi = 0.03\n", ""), 1)
     assert not found["agree"]
     assert not any("periods of its counter" in note for note in found["notes"])
+    assert "the counter of theta began -8 of its periods away" in found["fault"]
+    assert "range.phi" in found["fault"] and "ports.theta.zero" in found["fault"]
 
 
 def test_a_wrong_zero_is_no_fault_where_the_stiffness_is_right(shell: Shell) -> None:

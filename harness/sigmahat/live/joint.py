@@ -250,7 +250,7 @@ class _Counter:
             if self._last is None:
                 if self._most is not None:
                     row, most = values.reshape(1, -1), float(self._most)
-                    _, self._at_start = turns_from(most, row, self._ports)
+                    _, self._at_start = turns_from(0.0, most, row, self._ports)
             elif self._was_missing:
                 step, other_step = now - self._last
                 self._total += round((other_step - step) / self._period)

@@ -310,20 +310,22 @@ def _whole_turns(values: Array, configuration: Configuration) -> Iterator[str]:
     phi_most = configuration.parameters.get("range.phi")
     if phi_most is None:
         return
-    name, turns = turns_from(float(phi_most), values, configuration.ports)
+    name, turns = turns_from(0.0, float(phi_most), values, configuration.ports)
     if turns:
         _, period = counter(configuration.ports)
         values[:, list(configuration.ports).index(name)] += turns * period
         yield f"{name}: {turns:+d} periods of its counter, so that the deformation is in range.phi"
 
 
-def turns_from(most: float, values: Array, ports: Mapping[str, Port]) -> tuple[str, int]:
+def turns_from(
+    center: float, most: float, values: Array, ports: Mapping[str, Port]
+) -> tuple[str, int]:
     """The port that wraps, theta or q, and by how many periods it has to move; 0 if by none.
 
-    It moves if the median of the deformation is further than most from 0, and then no more.
+    It moves if the median of the deformation is further than most from center, and then no more.
 
-    most    [rad]
-    values  of the ports at the ticks [size: ticks x ports], nan where there is none
+    center, most  [rad]
+    values        of the ports at the ticks [size: ticks x ports], nan where there is none
     """
     both, period = counter(ports)
     if not np.isfinite(period):
@@ -333,7 +335,7 @@ def turns_from(most: float, values: Array, ports: Mapping[str, Port]) -> tuple[s
     phi = phi[np.isfinite(phi)]
     if not len(phi):
         return "", 0
-    away = float(np.median(phi))
+    away = float(np.median(phi)) - center
     turns = round(away / period)
     if abs(away - turns * period) <= most < abs(away):
         return both[0], turns if both[0] == "theta" else -turns

@@ -15,13 +15,14 @@ from sigmahat.fmi.instance import Fmu, Slave, Value, installed
 from sigmahat.identification.noise import low_pass
 from sigmahat.joint import sheet
 from sigmahat.joint.curve import NORMAL_95
+from sigmahat.joint.stored import LearnedLog
 from sigmahat.logs.configuration import Configuration
-from sigmahat.logs.curve import stiffness_at
+from sigmahat.logs.curve import stiffness_at, union
 from sigmahat.logs.job import Replay
 from sigmahat.logs.learned import read_learned
 from sigmahat.logs.log import Array, Log, LogError
 from sigmahat.logs.replay import gap, parameters, play
-from sigmahat.logs.sampling import Samples, stretches
+from sigmahat.logs.sampling import Samples, stretches, turns_from
 
 _INSTANTS = 20_000
 """Largest number of instants at which the stiffness is compared, evenly spaced in the log."""
@@ -166,6 +167,8 @@ class Validation:
     """Error of this torque below 2 Hz; None if the log is too short."""
     stiffness: Agreement  #: The learned stiffness compared with the stiffness of this log alone.
     notes: Sequence[str]  #: Sentences about the processing of the samples of the log.
+    turned: str | None
+    """A sentence if a counter began in another turn than in the logs before, else None."""
 
     @property
     def agree(self) -> bool | None:
@@ -176,6 +179,8 @@ class Validation:
     @property
     def fault(self) -> str | None:
         """An error of the estimates, with its likely cause; None without an error."""
+        if self.turned is not None:
+            return self.turned
         for which, (value, half) in (
             ("that was learned", self.stiffness.before),
             ("of this log", self.stiffness.alone),
@@ -263,6 +268,26 @@ def validate(log: Log, configuration: Configuration, start_from: str | Path) -> 
         torque_below=below,
         stiffness=agreement(before, alone, float(every["prior.torque_gain"])),
         notes=samples.notes,
+        turned=_turned(samples, configuration, learned.logs),
+    )
+
+
+def _turned(
+    samples: Samples, configuration: Configuration, logs: Sequence[LearnedLog]
+) -> str | None:
+    """A sentence if the deformation differs from `logs` by whole periods of a counter."""
+    reach = union([each.phi for each in logs])
+    if reach is None:
+        return None
+    low, high = reach
+    center, most = (low + high) / 2, high - low
+    name, turns = turns_from(center, most, samples.values, configuration.ports)
+    if not turns:
+        return None
+    return (
+        f"the counter of {name} began {-turns:+d} of its periods away from the logs of the learned "
+        "curve, so that the deformation is wrong: set range.phi to the largest deformation, "
+        f"{max(abs(low), abs(high)):.2g} rad or a little more, or ports.{name}.zero for this log"
     )
 
 
