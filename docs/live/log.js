@@ -55,15 +55,19 @@ const log = {
     const body = document.querySelector("#ports tbody");
     body.replaceChildren(...Object.entries(PORTS).map(([port, about]) => {
       const row = document.createElement("tr"), { column, unit } = found[port] ?? {};
-      const cell = (...content) => row.insertCell().append(...content);
+      const cell = (title, ...content) => {
+        const made = row.insertCell();
+        made.dataset.title = title;
+        made.append(...content);
+      };
       row.dataset.port = port;
-      cell(about.title + (about.optional ? " (if there is one)" : ""));
-      cell(chooser(`${port} column`, ["", ...this.table.names], column ?? ""));
-      cell(chooser(`${port} unit`, Object.keys(about.units), unit));
-      cell(...(Object.values(about.units).some((each) => each.per) ? [number(`${port} per`, "")] : []));
-      cell(...(about.geared ? [number(`${port} gear`, 1)] : []));
-      cell(...(port === "time" ? [] : [number(`${port} zero`, 0)]));
-      cell(...(port === "time" ? [] : [checkbox(`${port} reversed`)]));
+      row.insertCell().textContent = about.title + (about.optional ? " (if there is one)" : "");
+      cell("column", chooser(`${port} column`, ["", ...this.table.names], column ?? ""));
+      cell("unit", chooser(`${port} unit`, Object.keys(about.units), unit));
+      cell("per unit", ...(Object.values(about.units).some((each) => each.per) ? [number(`${port} per`, "")] : []));
+      cell("gear ratio", ...(about.geared ? [number(`${port} gear`, 1)] : []));
+      cell("zero", ...(port === "time" ? [] : [number(`${port} zero`, 0)]));
+      cell("reversed", ...(port === "time" ? [] : [checkbox(`${port} reversed`)]));
       return row;
     }));
   },
