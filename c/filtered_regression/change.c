@@ -97,7 +97,8 @@ int sh_change_begins_anew(sh_regression_state *state, sh_real error)
 
 /* Blocks and data become the blocks of the hypothesis that is in blocks.drifting. The data of all samples contain
  * samples from behind t, which contradict what these data say about the motor. The next posterior follows. It has the
- * prior twice, as the blocks contain the prior; what the blocks say soon outweighs the prior.
+ * prior twice, as the blocks contain the prior; what the blocks say soon outweighs the prior. The sums that describe
+ * the noise of single samples begin at 0: the mean row of a block hardly contains this noise.
  */
 static void adopt(sh_regression_state *state, const sh_parameters *p)
 {

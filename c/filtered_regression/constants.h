@@ -84,7 +84,7 @@
 #define SH_FEW_BLOCKS ((sh_real)4)
 /* Number of blocks below which nothing is forgotten [1]. */
 #define SH_FIRST_BLOCKS ((sh_real)20)
-/* Misfit, squared, that is a doubt with fewer than so many blocks [1]. With more blocks, all columns that may explain
+/* Misfit, squared, that is a doubt with fewer than so many blocks [1]. With more blocks, most columns that may explain
  * the misfit have been tried, and the variance factor covers the rest.
  */
 #define SH_UNEXPLAINED ((sh_real)2.25)

@@ -62,7 +62,8 @@ static sh_real of_errors(const sh_regression_state *state, const sh_parameters *
 
 /* tau_e = F' beta, (21), and sigma = dF' beta, (23), with the curve rls.eta_0. Both variances are c' P c plus
  * (s_g d(c' beta)/dg)^2 with the gain g of the torque (point 8), plus what errors of phi may change (point 5). The
- * variance of sigma also has what is not known beside a knee [(N.m/rad)2] (point 6). Returns d sigma / dg.
+ * variance of sigma also has what is not known beside a knee [(N.m/rad)2] (point 6). The share by which errors of phi
+ * change sigma is used for the torque, too, which is an approximation. Returns d sigma / dg.
  */
 static sh_real evaluate_at(const sh_regression_state *state, const sh_parameters *p,
                            const sh_joint_point *at, const sh_variances *variances, sh_real knees,

@@ -161,7 +161,9 @@ static sh_real squares_of(const sh_information *blocks, const sh_real *beta, sh_
            prior * sh_sum_of_products(beta, beta, blocks->size);
 }
 
-/* Sets 0 also while friction or the curve drifts: the recent blocks do not contain this drift. */
+/* Sets 0 also while friction or the curve drifts: the recent blocks do not contain this drift. The prior counts whole,
+ * although it fades in what the blocks excite: there beta' beta is small beside the squares of 20 blocks.
+ */
 void sh_misfit_judge_recent(sh_regression_state *state, const sh_parameters *p)
 {
     sh_blocks *blocks = &state->blocks;

@@ -135,6 +135,18 @@ def test_a_mirrored_motion_has_mirrored_torques(c: Library, method: int) -> None
         assert np.array_equal(mirrored[name], -found[name]), name
 
 
+@pytest.mark.parametrize("method", [1, 2])
+def test_a_motor_that_turns_the_other_way_gives_the_same_estimate(c: Library, method: int) -> None:
+    """Gear ratio and torque of the motor with the other sign. Its friction reverses late."""
+    z = table1_recording().measurements()[:6000]
+    z[50:, 3] += 0.02 * np.sign(np.gradient(z[:, 0]))[:-50]
+    values, gamma = {**REGRESSION, "method": method}, DEFAULTS["motor.gamma"]
+    found = Estimator(c, {**values, "motor.gamma": gamma}).run(z)
+    turned = Estimator(c, {**values, "motor.gamma": -gamma}).run(z * [1.0, 1.0, 1.0, -1.0, 1.0])
+    for name in found.dtype.names or ():
+        assert np.array_equal(turned[name], found[name]), name
+
+
 # Samples that are not finite
 
 

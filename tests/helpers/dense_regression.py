@@ -613,8 +613,14 @@ class Oracle:
         variance += self.friction_variance(filtered.unknown_f[at]) + x @ self.P @ x
         if self.error(row) ** 2 <= 25 * variance:
             return True
-        self.starting, self.settling = 0.0, 12 / self.w
+        self.wait_until_settled()
         return False
+
+    def wait_until_settled(self) -> None:
+        """A block that is not full would contain rows from both sides of the gap."""
+        self.starting, self.settling = 0.0, 12 / self.w
+        if len(self.blocks.rows) < self.blocks.length:
+            self.blocks.rows.clear()
 
     def mean_row(
         self,
@@ -647,10 +653,8 @@ class Oracle:
     def run(self) -> dict[str, Array]:
         for number, run in enumerate(self.runs):
             if number:
-                self.starting, self.settling = 0.0, 12 / self.w
+                self.wait_until_settled()
                 self.samples.clear()
-                if len(self.blocks.rows) < self.blocks.length:
-                    self.blocks.rows.clear()
             measured = self.modality[run.start] == SENSOR
             self.go(Filtered(self.c, self.p, self.inputs, self.z, run, measured))
         return {name: np.array(values, dtype=np.float64) for name, values in self.out.items()}
