@@ -58,7 +58,7 @@ TOKEN = re.compile(
 
 # Equivalent mutants: file, changed code, why no test can notice the change.
 EQUIVALENT: tuple[tuple[str, str, str], ...] = (
-    ("columns.c", "return sh_fabs(gamma) * f->first", "no output has the sign of this column"),
+    ("columns.c", "return -(gamma) * f->first", "no output has the sign of this column"),
     ("method.c", "return p->method >= 1 &&", "there is no method 0; in the table it is NULL"),
     ("motion_sign.c", "way = change >= 0 ? 1 : -1;", "it is not used if the change is zero"),
     ("state_variable_filter.c", "sh_fabs(behind[2][i]) <= SMALL", "it is never exactly 1e-30"),
