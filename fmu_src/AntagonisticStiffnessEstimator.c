@@ -1,17 +1,16 @@
-/* Binding of two estimators, one for each motor of an antagonistic pair. They share the encoder of
- * the link. The stiffness of the device is the sum of the two, section II.
+/* FMU with two estimators, one for each motor of an antagonistic pair. Both estimators use the encoder of the link.
+ * The stiffness of the device is the sum of both estimated stiffnesses (section II of the paper).
  */
 #include <math.h>
 
 #include "estimator_fmu.h"
 
 typedef struct {
-    sh_estimator_fmu side[2]; /* side[0] holds the common data of both sides */
+    sh_estimator_fmu side[2]; /* side[0] also holds the parameters that both estimators share */
     double sigma;             /* stiffness of the device [N.m/rad] */
-    double sigma_std;         /* its standard deviation, as if the errors of the sides were
-                                 independent [N.m/rad] */
+    double sigma_std;         /* standard deviation of sigma for independent errors [N.m/rad] */
     int doubt;                /* SH_DOUBT_* of the device */
-    int confident;            /* doubt is SH_DOUBT_NONE */
+    int confident;            /* 1 if doubt is SH_DOUBT_NONE */
     int valid;
 } AntagonisticStiffnessEstimator;
 
@@ -19,7 +18,7 @@ typedef struct {
 
 static const char *const WHO[] = {"Motor 1: ", "Motor 2: "};
 
-/* Parameters of one side: the common ones with its own motor. */
+/* The parameters of one estimator: the common parameters with the data of its own motor. */
 static sh_parameters parameters_of(const AntagonisticStiffnessEstimator *fmu, int i)
 {
     sh_parameters p = fmu->side[0].parameters;
@@ -28,7 +27,7 @@ static sh_parameters parameters_of(const AntagonisticStiffnessEstimator *fmu, in
     return p;
 }
 
-/* Why the sum is not confident. One side alone may move too little, if the sum is certain enough. */
+/* The reason to doubt the summed stiffness. One motor may move too little if the sum is still certain enough. */
 static int doubt_of_sum(const AntagonisticStiffnessEstimator *fmu)
 {
     const int one = fmu->side[0].output.doubt, other = fmu->side[1].output.doubt;

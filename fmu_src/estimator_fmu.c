@@ -17,21 +17,21 @@ sh_status sh_estimator_fmu_check(const sh_parameters *parameters, const char *wh
 void sh_estimator_fmu_initialize(sh_estimator_fmu *fmu)
 {
     sh_estimator_start(&fmu->estimator, &fmu->parameters, &fmu->output);
-    fmu->ahead = 0.0; /* the first tick is at the begin */
+    fmu->ahead = 0.0; /* the first tick is at the start time */
     fmu->strained = 0;
 }
 
 int sh_estimator_fmu_is_state(const sh_estimator_fmu *fmu, const sh_parameters *parameters)
 {
-    /* If `ahead` is far below 0, or not a number, a step would not end. */
+    /* If `ahead`, the number of periods until the next tick, were far below 0 or NaN, a step would never end. */
     return fmu->ahead >= -1.0 && fmu->ahead <= 1.0 &&
            sh_estimator_check(&fmu->estimator, parameters) == 0;
 }
 
-/* Largest number of ticks in a step. More ticks would take minutes, and show a wrong unit. */
+/* Largest number of ticks in a communication step. More ticks would take minutes and suggest a wrong unit of time. */
 static const double MAX_TICKS = 1e9;
 
-/* Inputs at a time after the begin of the step. */
+/* Extrapolates the inputs linearly to the time `after` [s], which counts from the start of the step. */
 static sh_measurement extrapolate(const sh_estimator_fmu *fmu, double after)
 {
     const sh_measurement *u = &fmu->input, *du = &fmu->input_derivative;
@@ -45,7 +45,7 @@ static sh_measurement extrapolate(const sh_estimator_fmu *fmu, double after)
     return z;
 }
 
-/* Logs why a tick was skipped: an input is out of range, or all inputs together are too large. */
+/* Logs why a tick was skipped: one input is out of range, or the regression overflows. */
 static void log_skipped(const sh_measurement *z, double t, const char *who, sh_instance *log)
 {
     static const char *const NAMES[] = {"theta", "q", "theta_c", "tau", "tau_e_sensor"};
@@ -68,7 +68,7 @@ static void log_skipped(const sh_measurement *z, double t, const char *who, sh_i
               who, t, z->theta, z->q, z->tau);
 }
 
-/* The limit takes time to compute, and is never less than range.phi. */
+/* The largest allowed deformation is slow to compute but never below range.phi, so range.phi is tested first. */
 static int is_too_far(const sh_parameters *p, double phi)
 {
     return fabs(phi) > p->range.phi && fabs(phi) > sh_parameters_largest_deformation(p);
@@ -104,14 +104,14 @@ static sh_status tick(sh_estimator_fmu *fmu, double t, double after, const char 
     return status;
 }
 
-/* Ticks are counted in periods and not in the importer's time, because its rounding errors add up.
- * So a step of length T is one tick, for any number of steps.
+/* Ticks are counted in sample periods, because the rounding errors of the importer's time add up. A communication step
+ * of one sample period always contains exactly one tick, even after many steps.
  */
 sh_status sh_estimator_fmu_step(sh_estimator_fmu *fmu, double t, double h, const char *who,
                                 sh_instance *log)
 {
     const double T = fmu->parameters.samplePeriod, periods = h / T;
-    /* A tick this close to the end of a step belongs to the next step. Any step may have ticks. */
+    /* A tick within this tolerance of the end of a step is left to the next step. Even a tiny step may have a tick. */
     const double tolerance = periods < 2e-6 ? periods / 2.0 : 1e-6;
     sh_status status = SH_OK;
 
@@ -123,7 +123,7 @@ sh_status sh_estimator_fmu_step(sh_estimator_fmu *fmu, double t, double h, const
         return SH_ERROR;
     }
     while (fmu->ahead < periods - tolerance) {
-        /* `ahead` may be negative by the tolerance. */
+        /* Because of the tolerance, `ahead` can be slightly negative. */
         if (tick(fmu, t, fmu->ahead > 0.0 ? fmu->ahead * T : 0.0, who, log) != SH_OK) {
             status = SH_WARNING;
         }

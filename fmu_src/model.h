@@ -1,19 +1,18 @@
-/* What a model provides for the FMI shell (shell/, fmi2/, fmi3/): one constant of type sh_model.
+/* Interface between a model and the FMI shell (shell/, fmi2/, fmi3/). A model defines one constant of type sh_model.
  *
- * A model is one plain struct without pointers that holds parameters, inputs,
- * outputs and state. The shell allocates this struct, accesses its variables through
- * the table generated from the model description, and copies the whole struct to save
- * and restore the state of the FMU.
+ * A model is one plain struct without pointers that holds parameters, inputs, outputs and state. The shell allocates
+ * this struct and accesses its variables through a table generated from the model description. To save and restore
+ * the state of the FMU, the shell copies the whole struct.
  */
 #ifndef SH_MODEL_H
 #define SH_MODEL_H
 
 #include <stddef.h>
 
-/* Result of a call. The values are those of FMI, in any of its versions. */
+/* Result of a call. Every version of FMI uses the same values. */
 typedef enum { SH_OK, SH_WARNING, SH_DISCARD, SH_ERROR } sh_status;
 
-/* Bits, so that a function can name the types that it is for. */
+/* Type of a variable. Each type is one bit, so that a function can accept a set of types. */
 typedef enum {
     SH_TYPE_REAL = 1,
     SH_TYPE_INTEGER = 2,
@@ -24,53 +23,52 @@ typedef enum {
 typedef enum {
     SH_ROLE_INPUT,
     SH_ROLE_OUTPUT,
-    SH_ROLE_GUESS,  /* output with a start value; the model overwrites it */
+    SH_ROLE_GUESS,  /* output with a start value, which the model overwrites */
     SH_ROLE_FIXED,  /* parameter, settable until the end of initialisation */
     SH_ROLE_TUNABLE /* parameter, also settable between steps */
 } sh_role;
 
-/* One variable. Its value reference is its index in the table. */
+/* A variable of the FMU. The value reference of a variable is its index in the table of variables. */
 typedef struct {
     const char *name;
-    size_t offset; /* in the model's struct, of a double (Real) or an int */
+    size_t offset; /* offset in the model's struct of a double (Real) or an int */
     sh_type type;
     sh_role role;
     double start;
-    double min, max; /* allowed values, including both limits; infinite without a limit */
+    double min, max; /* smallest and largest allowed value; infinite without a limit */
 } sh_variable;
 
-/* Sends a message to the user through the logger of the importer; format as in printf. */
+/* Sends a message to the user through the logger of the importer, with a format as in printf. */
 typedef struct sh_instance sh_instance;
 void sh_report(sh_instance *instance, sh_status status, const char *format, ...);
 
 typedef struct {
     const char *identifier; /* modelIdentifier */
-    const char *guid;       /* of FMI 2.0; the instantiation token of FMI 3.0 is the same */
+    const char *guid;       /* GUID of FMI 2.0 and instantiation token of FMI 3.0 */
     size_t size;            /* of the model's struct */
     const sh_variable *variables;
     size_t count;
-    /* The time derivative of the input at offset o is at o + derivative_offset. */
+    /* If an input has the offset o, its time derivative has the offset o + derivative_offset. */
     size_t derivative_offset;
-    /* Checks constraints between parameters, after the range of each parameter was checked. Returns
-     * SH_OK, or SH_ERROR after a message. May be NULL.
+    /* Checks constraints between parameters, after the shell has checked the range of each parameter. Returns SH_OK,
+     * or SH_ERROR after a message. The pointer `check` may be NULL.
      */
     sh_status (*check)(const void *model, sh_instance *log);
-    /* Sets state and outputs at time t [s] from parameters and inputs. May be called again. */
+    /* Computes state and outputs at time t [s] from parameters and inputs. The shell may call it repeatedly. */
     void (*initialize)(void *model, double t);
-    /* Whether this can be the state of an initialised model, so that the model can advance. The
-     * shell asks this for a state from outside, in which each parameter is in its range.
+    /* Returns 1 if an initialised model can advance from the state in `model`. The shell calls this function for a
+     * deserialised state, after it has checked the range of each parameter.
      */
     int (*is_state)(const void *model);
-    /* Advances the model from t to t + h, h > 0. Inputs are u + du/dt (s - t) for s in
-     * [t, t + h]. Returns SH_OK, SH_WARNING or SH_ERROR, and logs unless SH_OK.
+    /* Advances the model from t to t + h, where h > 0. At a time s in [t, t + h] an input is u + du/dt (s - t).
+     * Returns SH_OK, or SH_WARNING or SH_ERROR after a message.
      */
     sh_status (*step)(void *model, double t, double h, sh_instance *log);
 } sh_model;
 
 extern const sh_model sh_fmu_model;
 
-/* Defines it, from variables.h and the functions initialize, is_state and step of the including file.
- */
+/* Defines sh_fmu_model from variables.h and from the functions initialize, is_state and step of the including file. */
 #define SH_DEFINE_MODEL(Struct, offset_of_derivatives, check_or_null)                              \
     const sh_model sh_fmu_model = {                                                                \
         .identifier = SH_IDENTIFIER,                                                               \

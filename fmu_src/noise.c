@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-/* The next 64 random bits: splitmix64, Steele, Lea, Flood, "Fast splittable
+/* Returns the next 64 random bits of the generator splitmix64 by Steele, Lea and Flood, "Fast splittable
  * pseudorandom number generators", OOPSLA 2014.
  */
 static uint64_t next_bits(uint64_t *state)
@@ -14,7 +14,7 @@ static uint64_t next_bits(uint64_t *state)
     return z ^ (z >> 31);
 }
 
-/* Uniform over the centres of 2^52 equal parts of (0, 1): never 0 or 1, and exact. */
+/* Returns a uniform random number, the centre of one of 2^52 equal parts of (0, 1). It is exact and never 0 or 1. */
 static double uniform(uint64_t *state)
 {
     return ((double)(next_bits(state) >> 12) + 0.5) / 4503599627370496.0;
@@ -25,14 +25,14 @@ double sh_noise_normal(int seed, uint64_t k, unsigned channel)
     uint64_t state = (uint64_t)seed;
     double u, x;
 
-    /* Every seed, channel and sample has its own initial state. */
+    /* Each combination of seed, channel and sample has its own initial state of the random generator. */
     state = next_bits(&state) + channel;
     state = next_bits(&state) + k;
     state = next_bits(&state);
 
-    /* Ratio of uniforms: Kinderman, Monahan, ACM Trans. Math. Softw. 3 (1977). The last bit of the
-     * logarithm depends on the platform, but the logarithm only decides whether a pair is accepted;
-     * the value does not depend on it.
+    /* Ratio-of-uniforms method of Kinderman and Monahan, ACM Trans. Math. Softw. 3 (1977). The last bit of a logarithm
+     * depends on the platform. But the logarithm only decides whether a pair of random numbers is accepted, and does
+     * not change the returned value.
      */
     do {
         const double v = 1.7155277699214135 * (uniform(&state) - 0.5); /* sqrt(8/e) */

@@ -1,13 +1,13 @@
-/* White Gaussian noise without a state: sample k of a channel depends only on the seed, on k and on
- * the channel. The noise is the same on every platform.
+/* White Gaussian noise without a stored state: each sample depends only on the seed, on its number k and on its
+ * channel. The noise is the same on every platform.
  */
 #ifndef SH_NOISE_H
 #define SH_NOISE_H
 
 #include <stdint.h>
 
-/* Standard normal number k of a channel. Different channels and different seeds give independent
- * numbers. Any seed and any k are allowed.
+/* Returns sample k of a noise channel, a random number with standard normal distribution. Samples of different channels
+ * or different seeds are independent. Any seed and any k are allowed.
  */
 double sh_noise_normal(int seed, uint64_t k, unsigned channel);
 

@@ -1,4 +1,4 @@
-/* Binding of a plant to the FMI shell, the same for every plant. */
+/* Connects the generated equations of a plant to the FMI shell. All plants share this file. */
 #include "plant.h"
 
 #include <math.h>
@@ -10,10 +10,10 @@
 #include "radau.h"
 #include "variables.h"
 
-/* Largest number of noise periods in a step: a double holds this number exactly. */
+/* Largest number of sample periods of the noise in one step. A double can represent this number exactly. */
 static const double MAX_PERIODS = 1e15;
 
-/* Outputs of the state x under the inputs u. */
+/* Computes the outputs for the state x and the inputs u. */
 static void set_outputs(sh_plant *plant, const double *u)
 {
     double normals[SH_PLANT_NORMALS + 1]; /* a plant may have none */
@@ -27,9 +27,9 @@ static void set_outputs(sh_plant *plant, const double *u)
     (void)sh_plant_outputs(arguments, results, NULL, NULL, 0);
 }
 
-/* Advances to the noise sample at the end of a step: the last sample whose time, a multiple of the
- * period, has passed. As in estimator_fmu.c, time is counted in periods, and a time that is missed
- * by 1e-6 of a period counts as passed.
+/* Advances to the last noise sample that is due at the end of a step. Noise samples are one period apart. As in
+ * estimator_fmu.c, time is counted in periods. A sample that is due less than 1e-6 of a period after the end of the
+ * step counts as due.
  */
 static void advance_noise(sh_plant *plant, double periods)
 {
@@ -54,8 +54,8 @@ static void initialize(void *model, double t)
     set_outputs(plant, plant->u);
 }
 
-/* A step length that is not above 0 would have no end. The time since the last sample of the noise
- * must be below a period.
+/* Returns 1 if a simulation can continue from this state. With an internal step length of 0 or less, the integration
+ * would never end. The age of the noise sample must be at most one period.
  */
 static int is_state(const void *model)
 {
@@ -80,7 +80,7 @@ static const char *input_name(size_t i)
     return VARIABLES[k].name;
 }
 
-/* The sine that is added to input i at time t. At the start of the simulation this sine is 0. */
+/* Returns the value at time t of the sine that is added to input i. At the start of the simulation this sine is 0. */
 static double sine(const sh_plant *plant, size_t i, double t)
 {
     static const double TURN = 6.283185307179586;
@@ -91,7 +91,7 @@ static double sine(const sh_plant *plant, size_t i, double t)
     return plant->amplitude[i] * sin(TURN * plant->frequency[i] * (t - plant->started));
 }
 
-/* The input of the largest magnitude during a step. */
+/* Returns the index of the input with the largest magnitude during a step. */
 static size_t largest_input(const double *u, const double *u_end)
 {
     size_t i, largest = 0;

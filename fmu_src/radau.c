@@ -10,7 +10,7 @@ enum { STATES = SH_PLANT_STATES, INPUTS = SH_PLANT_INPUTS, STAGES = 3 };
 enum { MAX_NEWTON_ITERATIONS = 10, MAX_FOLLOWERS = 8 };
 
 #ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION
-enum { MAX_ATTEMPTS = 1000 }; /* a fuzzer finds steps that need all attempts */
+enum { MAX_ATTEMPTS = 1000 }; /* small, because a fuzzer finds steps that use up all attempts */
 #else
 enum { MAX_ATTEMPTS = 1000000 };
 #endif
@@ -18,12 +18,12 @@ static const double FOR_A_TRANSIENT = 10000, PER_SECOND = 1e6;
 
 static const double SCALE[STATES] = SH_PLANT_SCALES;
 static const double ERROR_TOLERANCE = 1e-8;
-/* Errors of Newton's iteration add up over the steps. The change in the last iteration is usually
- * smaller than this tolerance by orders of magnitude.
+/* The errors of Newton's iteration add up over the steps. The last iteration usually changes the solution by orders of
+ * magnitude less than NEWTON_TOLERANCE.
  */
 static const double NEWTON_TOLERANCE = 1e-12;
 
-/* Nodes (4 -+ sqrt(6)) / 10 and 1. */
+/* Nodes of the Runge-Kutta method: (4 -+ sqrt(6)) / 10 and 1. */
 static const double NODE[STAGES] = {0.15505102572168219, 0.64494897427831781, 1.0};
 
 /* The inverse of the Runge-Kutta matrix is T diag(REAL, [RE -IM; IM RE]) T^-1. */
@@ -37,11 +37,11 @@ static const double T_INVERSE[STAGES][STAGES] = {
     {-4.1787185915519047, -0.32768282076106239, 0.47662355450055045},
     {-0.50287263494578688, 2.5719269498556054, -0.59603920482822493}};
 
-/* Weights of the stages in the error estimate, (-13 -+ 7 sqrt(6)) / 3 and -1/3. */
+/* Weights of the three stages in the error estimate: (-13 -+ 7 sqrt(6)) / 3 and -1/3. */
 static const double DEFECT[STAGES] = {-10.048809399827416, 1.3821427331607489,
                                       -0.33333333333333333};
 
-/* f(x, u, p) */
+/* Computes the state derivative f(x, u, p). */
 static void evaluate(const double *x, const double *u, const double *p, double *f)
 {
     const double *arguments[] = {x, u, p};
@@ -49,7 +49,7 @@ static void evaluate(const double *x, const double *u, const double *p, double *
     (void)sh_plant_xdot(arguments, &f, NULL, NULL, 0);
 }
 
-/* Factors of REAL/h - J and of (RE + i IM)/h - J, where J = df/dx. */
+/* Factorizes the matrices REAL/h - J and (RE + i IM)/h - J, where J = df/dx. */
 static void factorize(const double *x, const double *u, const double *p, double h, double *factors)
 {
     const double shifts[] = {REAL / h, RE / h, IM / h};
@@ -58,7 +58,7 @@ static void factorize(const double *x, const double *u, const double *p, double 
     (void)sh_plant_factorize(arguments, &factors, NULL, NULL, 0);
 }
 
-/* b becomes (REAL/h - J)^-1 b. */
+/* Replaces b by (REAL/h - J)^-1 b. */
 static void solve_real(const double *factors, double *b)
 {
     const double *arguments[] = {factors, b};
@@ -66,7 +66,7 @@ static void solve_real(const double *factors, double *b)
     (void)sh_plant_solve_real(arguments, &b, NULL, NULL, 0);
 }
 
-/* re + i im becomes ((RE + i IM)/h - J)^-1 (re + i im). */
+/* Replaces the complex vector re + i im by ((RE + i IM)/h - J)^-1 (re + i im). */
 static void solve_complex(const double *factors, double *re, double *im)
 {
     const double *arguments[] = {factors, re, im};
@@ -75,7 +75,7 @@ static void solve_complex(const double *factors, double *re, double *im)
     (void)sh_plant_solve_complex(arguments, results, NULL, NULL, 0);
 }
 
-/* Largest |v| weight; not a number if one of v is not. */
+/* Weighted maximum norm of v: the largest |v[j]| weight[j], or NaN if an element of v is NaN. */
 static double norm(const double *v, const double *weight)
 {
     double largest = 0.0;
@@ -93,7 +93,7 @@ static double norm(const double *v, const double *weight)
     return largest;
 }
 
-/* to = matrix from */
+/* Multiplies `from` by `matrix`; the product is `to`. */
 static void transform(const double (*matrix)[STAGES], double (*from)[STATES], double (*to)[STATES])
 {
     int i, j;
@@ -106,7 +106,7 @@ static void transform(const double (*matrix)[STAGES], double (*from)[STATES], do
     }
 }
 
-/* Whether the inputs are constant. */
+/* Returns 1 if the time derivatives du of all inputs are 0. */
 static int are_held(const double *du)
 {
     int j;
@@ -119,7 +119,7 @@ static int are_held(const double *du)
     return 1;
 }
 
-/* F_i = f(x + Z_i) at the nodes of a step */
+/* Evaluates the state derivatives F_i = f(x + Z_i) at the nodes of a step. */
 static void evaluate_stages(const double *x, const double *u, const double *du, const double *p,
                             double h, double (*Z)[STATES], double (*F)[STATES])
 {
@@ -137,12 +137,12 @@ static void evaluate_stages(const double *x, const double *u, const double *du, 
     }
 }
 
-/* Finds Z with Z_i = h sum_k a_ik f(x + Z_k) by Newton's iteration from Z = 0, with the Jacobian at
- * x for all stages. In the variables W = T^-1 Z it separates into a real and a complex system.
+/* Solves Z_i = h sum_k a_ik f(x + Z_k) for Z by Newton's iteration, which starts at Z = 0 and uses the Jacobian at x
+ * for all stages. In the variables W = T^-1 Z the equations separate into a real and a complex system.
  * Returns 0 if the iteration does not converge.
  *
- * f       at x, under the inputs u
- * weight  of the states in the norm of a change
+ * f       state derivative at x under the inputs u
+ * weight  weights of the states in the norm of a change
  */
 static int solve_stages(const double *x, const double *u, const double *du, const double *p,
                         double h, const double *f, const double *weight, const double *factors,
@@ -157,7 +157,7 @@ static int solve_stages(const double *x, const double *u, const double *du, cons
     for (iteration = 0; iteration < MAX_NEWTON_ITERATIONS; ++iteration) {
         const double previous = change;
 
-        if (iteration == 0 && held) { /* all stages are still at x */
+        if (iteration == 0 && held) { /* all stages still equal the state x */
             for (i = 0; i < STAGES; ++i) {
                 (void)memcpy(F[i], f, sizeof F[i]);
             }
@@ -183,9 +183,9 @@ static int solve_stages(const double *x, const double *u, const double *du, cons
         if (change <= NEWTON_TOLERANCE) {
             return 1;
         }
-        /* The changes shrink by a constant factor; the error is the sum of the changes to come.
-         * Where f jumps by more than its size, the change grows once, even in a very short step.
-         * This is allowed as long as the change is below the allowed error of the step.
+        /* The changes of Newton's iteration shrink by a constant factor, so the error is a geometric series. Where f
+         * jumps by more than its magnitude, a change grows once, even in a very short step. Such a growth is accepted
+         * while the change is below the allowed error of the step.
          */
         if (iteration > 0) {
             const double rate = change / previous;
@@ -200,14 +200,14 @@ static int solve_stages(const double *x, const double *u, const double *du, cons
     return 0;
 }
 
-/* Estimated error of a step with the stages x + Z, as a multiple of the allowed error: the part of
- * this error that remains after `followers` more steps of this length.
+/* Estimates the error of a step with the stages x + Z, as a multiple of the allowed error. Only the part of the error
+ * counts that remains after `followers` more steps of the same length.
  *
- * A motion that decays in these steps need not be resolved. A step multiplies a mode by R(z), where
- * the exact solution has exp(z). On the whole negative axis R(z) is below 1 / (1 - z / REAL), and
- * the factors give this bound for all modes at once.
+ * A motion that decays during the following steps need not be resolved. One step multiplies a mode by R(z), while the
+ * exact solution multiplies this mode by exp(z). On the negative axis R(z) is below 1 / (1 - z / REAL). A solution of
+ * the real system with `factors` applies this bound to all modes at once.
  *
- * f  at the begin of the step
+ * f  state derivative at the start of the step
  */
 static double estimate_error(double (*Z)[STATES], const double *f, const double *weight, double h,
                              int followers, const double *factors)
@@ -221,7 +221,7 @@ static double estimate_error(double (*Z)[STATES], const double *f, const double 
     }
     solve_real(factors, error);
     size = norm(error, weight) / ERROR_TOLERANCE;
-    /* `size` counts fast modes fully. But the step itself damps these modes, too. */
+    /* Until here `size` contains fast modes without damping, although the step itself already damps these modes. */
     for (; followers >= 0 && size > 1.0; --followers) {
         for (j = 0; j < STATES; ++j) {
             error[j] *= REAL / h;
@@ -232,9 +232,9 @@ static double estimate_error(double (*Z)[STATES], const double *f, const double 
     return size;
 }
 
-/* One step from x to x_new, with factors for its length h. Returns the part of its error that is left
- * after `followers` more steps of this length, as a multiple of the allowed error, the largest over
- * the states; infinite or not a number without a solution.
+/* Makes one step of length h from x to x_new; `factors` must belong to h. Returns the estimated error that remains
+ * after `followers` more steps of length h, as a multiple of the allowed error, and maximal over the states. Without a
+ * solution the returned error is infinite or NaN.
  */
 static double take(const double *x, const double *u, const double *du, const double *p, double h,
                    int followers, const double *factors, double *x_new)
@@ -261,17 +261,17 @@ int sh_radau_attempts(double duration)
 int sh_radau_integrate(double *x, const double *u, const double *du, const double *p,
                        double duration, double *h)
 {
-    /* Far below any time constant, far above the rounding of the time. */
+    /* The shortest step is far below any time constant, but far above the rounding error of the time. */
     const double shortest = 1e-12 * (1.0 + duration);
-    double elapsed = 0.0, begin = INFINITY;             /* suggested after the first step */
-    double factors[SH_PLANT_FACTORS], factorized = 0.0; /* for steps of this length */
+    double elapsed = 0.0, begin = INFINITY;             /* length suggested after step 1 */
+    double factors[SH_PLANT_FACTORS], factorized = 0.0; /* for this step length */
     const int allowed = sh_radau_attempts(duration);
     int attempt, steps = 0, owed = 0, j;
 
     for (attempt = 0; attempt < allowed; ++attempt) {
         const double left = duration - elapsed;
         const double wanted = left > *h ? ceil(left / *h) : 1.0;
-        /* All steps of a plan are made. Only a plan of at least MAX_FOLLOWERS steps may change. */
+        /* All planned steps of equal length are made. Only a plan of at least MAX_FOLLOWERS steps may still change. */
         const double pieces = owed > 0 && owed < MAX_FOLLOWERS ? owed : fmax(wanted, owed);
         const double step = left / pieces;
         const int followers = (int)fmin(pieces - 1.0, MAX_FOLLOWERS);
@@ -280,7 +280,7 @@ int sh_radau_integrate(double *x, const double *u, const double *du, const doubl
         for (j = 0; j < INPUTS; ++j) {
             u_now[j] = u[j] + du[j] * elapsed;
         }
-        /* Steps that were planned together have the same length and use the same factors. */
+        /* Steps of one plan have the same length and therefore use the same matrix factors. */
         if (owed == 0 || fabs(step - factorized) > 1e-9 * step) {
             factorize(x, u_now, p, step, factors);
             factorized = step;
@@ -294,7 +294,7 @@ int sh_radau_integrate(double *x, const double *u, const double *du, const doubl
             ++steps;
             owed = followers;
             if (pieces <= 1.0) {
-                *h = fmin(*h, begin); /* the next call may begin with the same transient */
+                *h = fmin(*h, begin); /* the next call may start with the same transient */
                 return steps;
             }
             if (steps == 1) {

@@ -1,28 +1,27 @@
-/* Integration of the generated equations of a plant (plant_functions.h): Radau IIA with three
- * stages, order 5, L-stable; Hairer, Wanner, "Solving Ordinary Differential Equations II", section
- * IV.8.
+/* Integrates the generated equations of a plant (plant_functions.h) by the L-stable method Radau IIA with three stages
+ * and order 5. Hairer and Wanner describe the method in "Solving Ordinary Differential Equations II", section IV.8.
  *
- * Inputs are linear in time: u + du s, with s the time since the start. Arrays: x [size: states],
+ * Inputs are linear in time: u + du s, where s is the time since the start. Array sizes: x [size: states],
  * u and du [size: inputs], p [size: parameters].
  */
 #ifndef SH_RADAU_H
 #define SH_RADAU_H
 
-/* Advances x by duration > 0 in steps, with the allowed error at the end of the duration: for each
- * state 1e-8 (scale + |x|), with the scale of the plant. A motion that decays before the end is
- * resolved only as far as this motion changes x at the end.
+/* Integrates the state x over `duration` > 0 in several steps. At the end, the allowed error of each state is
+ * 1e-8 (scale + |x|), where the plant defines the scale. A motion that decays before the end is only resolved as far as
+ * this motion changes x at the end.
  *
- * *h in: the step to try first, infinite if unknown; out: the step to try first after this
- * duration.
+ * On input, *h is the step length to try first, or infinite if unknown. On output, *h is the step length that the next
+ * call should try first.
  *
- * Returns the number of steps. Returns 0 if the error of even a negligible step is too large, or
- * after sh_radau_attempts(duration) attempts; x is then the state after the last good step.
+ * Returns the number of steps. Returns 0 if even a negligibly short step has a too large error, or after
+ * sh_radau_attempts(duration) attempts. After a failure, x is the state after the last accepted step.
  */
 int sh_radau_integrate(double *x, const double *u, const double *du, const double *p,
                        double duration, double *h);
 
-/* Largest number of attempted steps in a duration: 10000 for a transient, and one for each
- * microsecond of the duration, but a million in all. Only an absurdly fast joint needs more.
+/* Largest number of attempted steps: 10000 for a transient plus one for each microsecond of the duration, but at most
+ * a million. Only an unrealistically fast joint needs more attempts.
  */
 int sh_radau_attempts(double duration);
 

@@ -1,4 +1,4 @@
-/* FMI 2.0: inquiry, logging, creation, the course of a simulation, and the state of the FMU. */
+/* Functions of FMI 2.0 for inquiry, logging, creation, simulation, and the state of the FMU. */
 #include <math.h>
 
 #include "fmi2Functions.h"
@@ -15,7 +15,7 @@ const char *fmi2GetVersion(void)
     return fmi2Version;
 }
 
-/* The logger uses the message as a format: a % must not start a conversion. */
+/* The logger of FMI 2.0 takes a message as a printf format, so sh_report doubles each % in a message. */
 const char sh_special = '%';
 
 void sh_deliver(const sh_instance *instance, sh_status status, const char *category,
@@ -80,7 +80,7 @@ fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean toleranceDefined, fm
                                  stopTimeDefined ? stopTime : INFINITY, "fmi2SetupExperiment");
 }
 
-/* A function whose arguments the shell takes as they are. */
+/* Defines a function of FMI that passes its arguments unchanged to a function of the shell. */
 #define FORWARD(Name, parameters, call)                                                            \
     fmi2Status fmi2##Name parameters                                                               \
     {                                                                                              \
@@ -101,8 +101,8 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real currentCommunicationPoint,
                                              "fmi2DoStep");
 }
 
-/* Status information exists for asynchronous and for discarded steps. This FMU has no such steps,
- * and knows only the time of the last step.
+/* FMI 2.0 defines status information for asynchronous and for discarded steps. An FMU of this project has no such
+ * steps and only provides the time of its last step.
  */
 static fmi2Status no_status(fmi2Component c, const char *function)
 {
@@ -128,7 +128,7 @@ NO_STATUS(Status, Status)
 NO_STATUS(IntegerStatus, Integer)
 NO_STATUS(StringStatus, String)
 
-/* The one status of a type that this FMU knows. It never asks to stop. */
+/* Defines a function that returns the only status of its type that the FMU knows. The FMU never asks to terminate. */
 #define STATUS(Type, known, now)                                                                   \
     fmi2Status fmi2Get##Type##Status(fmi2Component c, const fmi2StatusKind s, fmi2##Type *value)   \
     {                                                                                              \

@@ -1,9 +1,9 @@
-/* FMI 2.0: the functions for features that these FMUs do not have, as in fmi3/refused.c. */
+/* Functions of FMI 2.0 for features that the FMUs of this project do not have; compare fmi3/refused.c. */
 #include "fmi2Functions.h"
 #include "simulation.h"
 
 #ifdef __GNUC__
-#pragma GCC diagnostic ignored "-Wunused-parameter" /* no argument but the instance is used */
+#pragma GCC diagnostic ignored "-Wunused-parameter" /* only the instance is used */
 #endif
 
 /* NOLINTBEGIN(misc-unused-parameters) */

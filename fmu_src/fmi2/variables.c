@@ -1,4 +1,4 @@
-/* FMI 2.0: reading and writing variables, one by one. */
+/* Functions of FMI 2.0 that read and write variables. */
 #include "access.h"
 #include "fmi2Functions.h"
 
@@ -14,7 +14,7 @@ const char *sh_type_name(sh_type type)
     }
 }
 
-/* A call of an importer with one value for each reference. */
+/* Describes a call of the importer that passes one value for each value reference. */
 #define CALL(function, types, type_of_values)                                                      \
     const sh_access access = {c, function, types, type_of_values, 0, vr, nvr, nvr}
 
@@ -36,7 +36,7 @@ ACCESS(Real, SH_TYPE_REAL, SH_DOUBLES)
 ACCESS(Integer, SH_TYPE_INTEGER | SH_TYPE_ENUMERATION, SH_INTS)
 ACCESS(Boolean, SH_TYPE_BOOLEAN, SH_INTS)
 ACCESS(String, 0,
-       SH_BYTES) /* no FMU of this project has such a variable: any reference is an error */
+       SH_BYTES) /* no FMU of this project has a String variable, so any reference is an error */
 
 fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
                                        const fmi2Integer order[], const fmi2Real value[])

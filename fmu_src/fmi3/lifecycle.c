@@ -1,4 +1,4 @@
-/* FMI 3.0: inquiry, logging, creation, the course of a simulation, and the state of the FMU. */
+/* Functions of FMI 3.0 for inquiry, logging, creation, simulation, and the state of the FMU. */
 #include <math.h>
 
 #include "fmi3Functions.h"
@@ -10,7 +10,7 @@ const char *fmi3GetVersion(void)
     return fmi3Version;
 }
 
-/* In a message #7# means the value of variable 7. */
+/* In a message of FMI 3.0, #7# means the value of variable 7, so sh_report doubles each # in a message. */
 const char sh_special = '#';
 
 void sh_deliver(const sh_instance *instance, sh_status status, const char *category,
@@ -47,7 +47,7 @@ fmi3Instance fmi3InstantiateCoSimulation(
     size_t nRequiredIntermediateVariables, fmi3InstanceEnvironment instanceEnvironment,
     fmi3LogMessageCallback logMessage, fmi3IntermediateUpdateCallback intermediateUpdate)
 {
-    /* FMI 3.0 has no functions for memory. */
+    /* An importer of FMI 3.0 passes no functions for memory. */
     const sh_importer importer = {instanceEnvironment, (void (*)(void))logMessage, NULL, NULL};
 
     (void)resourcePath; /* the FMU has no resources */
@@ -85,7 +85,7 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance instance, fmi3Boolean tolera
     return (fmi3Status)sh_begin_initialization(instance, function);
 }
 
-/* A function whose arguments the shell takes as they are. */
+/* Defines a function of FMI that passes its arguments unchanged to a function of the shell. */
 #define FORWARD(Name, parameters, call)                                                            \
     fmi3Status fmi3##Name parameters                                                               \
     {                                                                                              \

@@ -1,11 +1,11 @@
-/* FMI 3.0: the functions for features that these FMUs do not have. The standard demands that each
- * function exists; here each function fails with a message that names the missing feature.
+/* Functions of FMI 3.0 for features that the FMUs of this project do not have. The standard demands that these
+ * functions exist. Each of them fails with a message that names the missing feature.
  */
 #include "fmi3Functions.h"
 #include "simulation.h"
 
 #ifdef __GNUC__
-#pragma GCC diagnostic ignored "-Wunused-parameter" /* no argument but the instance is used */
+#pragma GCC diagnostic ignored "-Wunused-parameter" /* only the instance is used */
 #endif
 
 /* NOLINTBEGIN(misc-unused-parameters) */

@@ -1,4 +1,4 @@
-/* FMI 3.0: reading and writing variables, which are scalars. */
+/* Functions of FMI 3.0 that read and write variables. All variables are scalars. */
 #include "access.h"
 #include "fmi3Functions.h"
 
@@ -39,7 +39,7 @@ ACCESS(Int32, SH_TYPE_INTEGER, SH_INTS)
 ACCESS(Int64, SH_TYPE_ENUMERATION, SH_INT64S)
 ACCESS(Boolean, SH_TYPE_BOOLEAN, SH_BYTES)
 
-/* No variable has one of these types: every reference is refused. */
+/* No variable has one of the following types, so their functions refuse every value reference. */
 ACCESS(Float32, 0, SH_BYTES)
 ACCESS(Int8, 0, SH_BYTES)
 ACCESS(UInt8, 0, SH_BYTES)

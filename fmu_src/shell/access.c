@@ -11,14 +11,14 @@ int sh_accepts(sh_instance *instance, const sh_variable *variable, double value,
     if (!sh_is_parameter(variable) || (isfinite(value) && value >= min && value <= max)) {
         return 1;
     }
-    /* "[0, 1]" or "(-inf, inf)" */
+    /* The message shows a range as "[0, 1]" or "(-inf, inf)". */
     sh_report(instance, SH_ERROR, "%s: parameter %s = %.9g is out of its range %c%.9g, %.9g%c.",
               function, variable->name, value, isfinite(min) ? '[' : '(', min, max,
               isfinite(max) ? ']' : ')');
     return 0;
 }
 
-/* Time, the independent variable of FMI 3.0: its reference follows the references of the table. */
+/* Returns 1 for the value reference of time, which follows the references of the table. Only FMI 3.0 has it. */
 static int is_time(const sh_access *access, uint32_t reference)
 {
     return access->fmi3 && reference == sh_fmu_model.count;
@@ -42,7 +42,7 @@ static void refuse_reference(const sh_access *access, uint32_t reference)
     }
 }
 
-/* The variable of a reference if the call is for its type, else NULL. */
+/* Returns the variable of a value reference, or NULL if the called function does not handle its type. */
 static const sh_variable *find(const sh_access *access, uint32_t reference)
 {
     if (reference < sh_fmu_model.count) {
@@ -54,7 +54,7 @@ static const sh_variable *find(const sh_access *access, uint32_t reference)
     return NULL;
 }
 
-/* Of all variables but inputs, which may be set in all states of sh_begin_set. */
+/* Returns 1 if a parameter or an output may be set now, else 0 after a message. sh_begin_set handles inputs. */
 static int may_be_set(sh_instance *instance, const sh_variable *variable, const char *function)
 {
     static const struct {
@@ -62,7 +62,7 @@ static int may_be_set(sh_instance *instance, const sh_variable *variable, const 
         const char *rule;
     } RULES[SH_ROLE_TUNABLE + 1] = {
         [SH_ROLE_OUTPUT] = {0, "an output"},
-        [SH_ROLE_GUESS] = {SH_INSTANTIATED, "an output"}, /* of its initial value, overwritten */
+        [SH_ROLE_GUESS] = {SH_INSTANTIATED, "an output"}, /* the start value, later overwritten */
         [SH_ROLE_FIXED] = {SH_INSTANTIATED | SH_INITIALIZATION,
                            "a fixed parameter, settable until the end of initialisation"},
         [SH_ROLE_TUNABLE] = {SH_INSTANTIATED | SH_INITIALIZATION | SH_STEP, "a tunable parameter"},
@@ -76,7 +76,7 @@ static int may_be_set(sh_instance *instance, const sh_variable *variable, const 
     return 0;
 }
 
-/* The value at an index of the importer's array: a double holds every value of a variable. */
+/* Returns element i of the importer's array as a double, which can represent the value of any variable. */
 static double load(const sh_access *access, const void *values, size_t i)
 {
     if (access->values == SH_DOUBLES) {
@@ -100,7 +100,7 @@ static void store(const sh_access *access, void *values, size_t i, double value)
     }
 }
 
-/* The instance of a call, if its arguments are usable; else NULL, after a message. */
+/* Returns the instance of a call whose arguments are valid, else NULL after a message. */
 static sh_instance *begin(const sh_access *access, unsigned states, const void *values)
 {
     sh_instance *instance = sh_enter(access->handle, states, access->function);
@@ -133,7 +133,7 @@ sh_instance *sh_begin_set(const sh_access *access, const void *values)
             refuse_reference(access, access->references[i]);
             return NULL;
         }
-        if (variable->role == SH_ROLE_INPUT) { /* with any value, see sh_accepts */
+        if (variable->role == SH_ROLE_INPUT) { /* sh_accepts allows any value of an input */
             continue;
         }
         if (!may_be_set(instance, variable, access->function)) {

@@ -1,4 +1,4 @@
-/* Calls of the importer that read and write variables by their references. */
+/* Functions that read and write variables of the FMU by their value references. */
 #ifndef SH_ACCESS_H
 #define SH_ACCESS_H
 
@@ -6,38 +6,36 @@
 
 #include "simulation.h"
 
-/* Type of the values in the importer's array. */
+/* Type of the elements in the importer's array of values. */
 typedef enum {
     SH_DOUBLES,
     SH_INTS,
     SH_INT64S,
-    SH_BYTES /* Booleans: other values than true and false must not be read as a bool */
+    SH_BYTES /* Boolean values as bytes, because C must not read a byte above 1 as a bool */
 } sh_values;
 
 /* One call of the importer that reads or writes variables. */
 typedef struct {
     void *handle;         /* from the importer; may be NULL */
-    const char *function; /* its name, for messages */
-    unsigned types;       /* allowed SH_TYPE_*; 0: any reference is an error */
+    const char *function; /* name of the called function, for messages */
+    unsigned types;       /* bit set of the allowed SH_TYPE_*; 0: any reference is an error */
     sh_values values;
     int fmi3; /* 1: time is a variable, and start values can be read before the initialisation */
     const uint32_t *references;
-    size_t count;  /* of references */
-    size_t length; /* of the importer's array of values */
+    size_t count;  /* number of value references */
+    size_t length; /* number of elements in the importer's array of values */
 } sh_access;
 
-/* Reads the variables of a call. Initial outputs are computed from the values set so far. */
+/* Reads the variables of a call. During initialisation, outputs are computed from the values that were set so far. */
 sh_status sh_get(const sh_access *access, void *values);
 
-/* Writes the variables of a call, all or none. */
+/* Writes all variables of a call, or none of them after an error. */
 sh_status sh_set(const sh_access *access, const void *values);
 
-/* The instance of a call whose variables can all be set now, to these values; else NULL, after a
- * message.
- */
+/* Returns the instance if all variables of a call can be set to these values now, else NULL after a message. */
 sh_instance *sh_begin_set(const sh_access *access, const void *values);
 
-/* Name of a type in this version of FMI, for messages. */
+/* Returns the name of a type in the current version of FMI, for messages. */
 const char *sh_type_name(sh_type type);
 
 #endif

@@ -1,4 +1,4 @@
-/* The begin and the end of an instance, and how a call enters it. */
+/* Functions that create, reset and free an instance, and that refuse wrong calls with a message. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -32,7 +32,7 @@ int sh_refuse_null(sh_instance *instance, const char *function, const char *argu
     return 0;
 }
 
-/* Both or none: memory must be freed by the same library that allocated it. */
+/* The library that allocated memory must also free it. So both memory functions of the importer are used, or none. */
 static int importer_allocates(const sh_importer *importer)
 {
     return importer->allocate != NULL && importer->release != NULL;
@@ -60,7 +60,7 @@ void sh_release(const sh_importer *importer, void *memory)
     }
 }
 
-/* An instance for messages, while there is no other instance. */
+/* Returns a temporary instance that can log messages before the real instance exists. */
 static sh_instance nobody(const sh_importer *importer)
 {
     static char nameless[] = "(no name)";

@@ -1,4 +1,4 @@
-/* One instance of the FMU and the values of its variables, the same in every version of FMI. */
+/* An instance of the FMU, and access to the values of its variables, for every version of FMI. */
 #ifndef SH_INSTANCE_H
 #define SH_INSTANCE_H
 
@@ -6,8 +6,8 @@
 
 #include "model.h"
 
-/* State of the instance in the state machine of FMI. The values are bits, so that each function can
- * name the set of its allowed states.
+/* State of an instance in the state machine of FMI. Each state is one bit, so that a function can name the set of its
+ * allowed states.
  */
 typedef enum {
     SH_INSTANTIATED = 1,
@@ -17,10 +17,10 @@ typedef enum {
     SH_ANY = 15
 } sh_state;
 
-/* What the importer gave to the instance. Any of it may be NULL. */
+/* Pointers that the importer passes when it creates an instance. Each of these pointers may be NULL. */
 typedef struct {
     void *environment;
-    void (*logger)(void); /* function for messages; sh_deliver knows the type */
+    void (*logger)(void); /* logger of the importer; sh_deliver casts it to its real type */
     void *(*allocate)(size_t count, size_t size);
     void (*release)(void *memory);
 } sh_importer;
@@ -28,16 +28,16 @@ typedef struct {
 struct sh_instance {
     sh_importer importer;
     char *name;
-    unsigned categories; /* SH_LOG_* that are passed on */
+    unsigned categories; /* bit set SH_LOG_*: categories of messages that are logged */
     sh_state state;
-    double time;              /* communication point reached */
-    double stop_time;         /* no step may end after this time; infinite: no stop time */
-    double steps;             /* communication steps made */
+    double time;              /* current communication point [s] */
+    double stop_time;         /* no step may end after this time; infinite without a stop time */
+    double steps;             /* number of communication steps so far */
     double previous_step;     /* length of the last step [s]; 0: no step yet */
-    int outputs_stale;        /* in initialisation: outputs are older than the values set */
-    int parameters_unchecked; /* a parameter was set since the last check */
-    size_t slopes_end; /* number of first variables in which a derivative may differ from 0 */
-    void *model;       /* of sh_fmu_model.size bytes */
+    int outputs_stale;        /* 1: a value was set after the outputs were computed */
+    int parameters_unchecked; /* 1: a parameter was set after the last check */
+    size_t slopes_end;        /* variables from this index on have input derivatives of 0 */
+    void *model;              /* struct of the model, with sh_fmu_model.size bytes */
 };
 
 static inline int sh_is_parameter(const sh_variable *variable)
@@ -45,8 +45,8 @@ static inline int sh_is_parameter(const sh_variable *variable)
     return variable->role == SH_ROLE_FIXED || variable->role == SH_ROLE_TUNABLE;
 }
 
-/* 1 if the variable may have this value; else 0, after a message. Only parameters have limits: an
- * input that is not finite skips ticks.
+/* Returns 1 if the variable may have this value, else 0 after a message. Only parameters have limits. An input that is
+ * not finite is allowed, and makes the estimator skip ticks.
  */
 int sh_accepts(sh_instance *instance, const sh_variable *variable, double value,
                const char *function);
@@ -56,7 +56,7 @@ static inline void *sh_place(const sh_instance *instance, const sh_variable *var
     return (char *)instance->model + variable->offset;
 }
 
-/* The value of a variable of any type: a double holds every int. */
+/* Returns the value of a variable of any type as a double, which can represent every int. */
 static inline double sh_read(const sh_instance *instance, const sh_variable *variable)
 {
     const void *place = sh_place(instance, variable);
@@ -71,12 +71,12 @@ static inline void sh_write(sh_instance *instance, const sh_variable *variable, 
     if (variable->type == SH_TYPE_REAL) {
         *(double *)place = value;
     } else {
-        /* The value is in its range, unless the importer changed it after the check. */
+        /* The value fits into an int, unless the importer changed its array after the check. */
         *(int *)place = value >= INT_MAX ? INT_MAX : value > INT_MIN ? (int)value : INT_MIN;
     }
 }
 
-/* Time derivative of a Real input. */
+/* Returns the address of the time derivative of a Real input. */
 static inline double *sh_slope(sh_instance *instance, const sh_variable *input)
 {
     return (double *)(void *)((char *)sh_place(instance, input) + sh_fmu_model.derivative_offset);

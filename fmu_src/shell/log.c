@@ -6,7 +6,7 @@
 
 #include "simulation.h"
 
-/* The first ones are those of an sh_status. */
+/* All categories of messages. The first four belong to the values of sh_status, in the same order. */
 static const struct {
     const char *name;
     unsigned category;
@@ -16,8 +16,8 @@ static const struct {
              {"logStatusError", SH_LOG_ERROR},
              {"logAll", SH_LOG_ALL}};
 
-/* Copies a message, at most size - 1 characters. Texts of the importer in it may be no UTF-8, or be cut
- * inside a character: only ASCII is shown.
+/* Copies at most size - 1 characters of a message, and replaces each byte that is not ASCII by '?'. Text from the
+ * importer may be invalid UTF-8, or may be cut inside of a character.
  */
 static void escape(char *copy, size_t size, const char *text)
 {

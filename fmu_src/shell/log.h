@@ -1,4 +1,4 @@
-/* Messages for the user: their categories, and text that an importer can rely on. */
+/* Categories of the messages for the user, and the delivery of messages to the importer. */
 #ifndef SH_LOG_H
 #define SH_LOG_H
 
@@ -14,15 +14,15 @@ enum {
     SH_LOG_ALL = 15
 };
 
-/* Each version of FMI has its own character that has a meaning in messages, which sh_report writes
- * twice, and its own function that gives a message to the importer's logger, which is not NULL.
+/* Each version of FMI defines its own sh_special and sh_deliver. sh_special is a character with a special meaning in
+ * messages, so sh_report writes it twice. sh_deliver passes a message to the importer's logger, which is not NULL.
  */
 extern const char sh_special;
 void sh_deliver(const sh_instance *instance, sh_status status, const char *category,
                 const char *text);
 
-/* Writes the SH_LOG_* of some categories to *found, SH_LOG_ALL if count is 0. Unknown categories
- * are ignored, with a warning. `handle` is from the importer, and may be NULL.
+/* Converts names of categories to a bit set *found of SH_LOG_*, which is SH_LOG_ALL if count is 0. Unknown names are
+ * ignored with a warning. The importer passes `handle`, which may be NULL.
  */
 sh_status sh_find_categories(void *handle, size_t count, const char *const categories[],
                              unsigned *found, const char *function);

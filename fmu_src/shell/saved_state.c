@@ -1,8 +1,8 @@
-/* Saving, restoring and serialising the state of the FMU, the same in every version of FMI.
+/* Functions that save, restore and serialise the state of the FMU, for every version of FMI.
  *
- * A saved state is a block of bytes: a header, then the model's struct. It contains no pointer. A
- * serialised state is the same bytes. Version, GUID, length and checksum show whether the bytes are
- * damaged or of another FMU.
+ * A saved state is a block of bytes without pointers: a header, followed by the model's struct. A serialised state
+ * consists of the same bytes. Version, GUID, length and checksum show whether a block is damaged or belongs to another
+ * FMU.
  */
 #include <stdint.h>
 #include <string.h>
@@ -11,8 +11,7 @@
 
 enum {
     GUID_LENGTH = 64,
-    STATE_VERSION = 23 /* to be raised with every change of a model's struct: the GUID changes
-                         with the variables only */
+    STATE_VERSION = 23 /* raise it when a model's struct changes: the GUID only covers variables */
 };
 
 typedef struct {
@@ -22,7 +21,7 @@ typedef struct {
     char guid[GUID_LENGTH];
     double time, stop_time, steps, previous_step;
     uint64_t outputs_stale;
-    uint64_t checksum; /* of all bytes of the block, taken with 0 in this place */
+    uint64_t checksum; /* checksum of the whole block, computed with checksum = 0 */
 } state_header;
 
 static const char MAGIC[8] = {'s', 'i', 'g', 'm', 'a', 'h', 'a', 't'};
@@ -54,7 +53,7 @@ static uint64_t checksum(const unsigned char *block, size_t size)
     return hash;
 }
 
-/* Writes the state of an instance to a block, without its checksum. */
+/* Writes the state of an instance to a block, whose checksum remains 0. */
 static void write_block(const sh_instance *instance, void *block)
 {
     state_header header;
@@ -73,7 +72,7 @@ static void write_block(const sh_instance *instance, void *block)
     (void)memcpy((char *)block + sizeof header, instance->model, sh_fmu_model.size);
 }
 
-/* NULL if the block is a state of this FMU, else the defect as text. Reads only the header. */
+/* Checks the header of a block. Returns NULL if the block is a state of this FMU, else the defect as text. */
 static const char *defect_of_block(const void *block)
 {
     const state_header header = header_of(block);
@@ -90,7 +89,7 @@ static const char *defect_of_block(const void *block)
     return NULL;
 }
 
-/* Copies the state of the simulation, without the model, from the header. */
+/* Copies the state of the simulation from the header of a block to an instance, but not the model's struct. */
 static void read_header(sh_instance *instance, const void *block)
 {
     const state_header header = header_of(block);
@@ -101,13 +100,11 @@ static void read_header(sh_instance *instance, const void *block)
     instance->steps = header.steps;
     instance->previous_step = header.previous_step;
     instance->outputs_stale = header.outputs_stale != 0;
-    instance->parameters_unchecked = 1;        /* the next step checks the parameters */
-    instance->slopes_end = sh_fmu_model.count; /* the state may have slopes */
+    instance->parameters_unchecked = 1;        /* the next step will check the parameters */
+    instance->slopes_end = sh_fmu_model.count; /* the state may contain input derivatives */
 }
 
-/* NULL if the bytes are a block without a defect, with its checksum; else the defect as text, such
- * as "is truncated".
- */
+/* Checks serialised bytes. Returns NULL if they are valid, else the defect as text, such as "is truncated". */
 static const char *defect_of_bytes(const void *bytes, size_t size)
 {
     const char *defect;
@@ -134,18 +131,18 @@ static int is_state(sh_state state)
            state == SH_TERMINATED;
 }
 
-/* Whether the next step is possible without an initialisation of the model before. */
+/* Returns 1 if the next step is possible without another initialisation of the model. */
 static int is_initialized(const sh_instance *shown)
 {
     return shown->state == SH_STEP || (shown->state == SH_INITIALIZATION && !shown->outputs_stale);
 }
 
-/* 1 if an instance can continue from a block from outside; else 0, after a message. A checksum does
- * not show whether somebody made the bytes on purpose.
+/* Returns 1 if an instance can continue from a deserialised block, else 0 after a message. The check is necessary
+ * because a manipulated block may have a valid checksum.
  */
 static int is_sound(const sh_instance *instance, void *block, const char *function)
 {
-    sh_instance shown = *instance; /* with the model in the block */
+    sh_instance shown = *instance; /* an instance that uses the model in the block */
     size_t i;
 
     read_header(&shown, block);
@@ -172,7 +169,7 @@ sh_status sh_save_state(void *handle, void **state, const char *function)
     if (instance == NULL || !sh_has(instance, state, function, "FMUState")) {
         return SH_ERROR;
     }
-    /* The importer may pass a state from an earlier call, to be overwritten. */
+    /* The importer may pass a state from an earlier call, which is overwritten. */
     block = *state != NULL ? *state : sh_allocate(&instance->importer, block_size());
     if (block == NULL) {
         sh_report(instance, SH_ERROR, "%s: out of memory.", function);

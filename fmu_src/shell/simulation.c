@@ -1,6 +1,4 @@
-/* The course of a simulation, the same in every version of FMI: parameters are checked, initial
- * outputs computed, steps made.
- */
+/* Functions that check parameters, compute initial outputs and make communication steps, for every version of FMI. */
 #include "simulation.h"
 
 #include <float.h>
@@ -18,7 +16,7 @@ sh_status sh_check_parameters(sh_instance *instance)
     return SH_OK;
 }
 
-/* Parameters that are each in their range may together still give numbers that are too large. */
+/* Checks that all outputs are finite. Even parameters within their ranges can together cause an overflow. */
 static int outputs_are_finite(sh_instance *instance)
 {
     size_t i;
@@ -46,7 +44,7 @@ static int outputs_are_finite(sh_instance *instance)
 
 sh_status sh_initialize(sh_instance *instance)
 {
-    /*@ dynamic_split instance->parameters_unchecked; */ /* for the proof of docs/proof/shell.md */
+    /*@ dynamic_split instance->parameters_unchecked; */ /* prover hint: docs/proof/shell.md */
     if (!instance->outputs_stale) {
         return SH_OK;
     }
@@ -101,8 +99,8 @@ sh_status sh_begin_initialization(void *handle, const char *function)
     return SH_OK;
 }
 
-/* After an error of a parameter the instance stays in initialisation mode, so that the importer can
- * correct the parameter.
+/* If a parameter is wrong, the instance stays in initialisation mode, so that the importer can correct the
+ * parameter.
  */
 sh_status sh_end_initialization(void *handle, const char *function)
 {
@@ -132,9 +130,9 @@ static void clear_input_derivatives(sh_instance *instance)
     instance->slopes_end = 0;
 }
 
-/* Whether a step ends after the stop time by rounding only. Some importers make a last step of
- * 1e-13 s, so the tolerance also depends on the step before. Some importers add up their time, so
- * its error grows with the number of steps.
+/* Returns 1 if a step ends after the stop time only because of rounding errors. Some importers make a last step of
+ * 1e-13 s, so the tolerance also depends on the previous step. Some importers add up step lengths, so the error of
+ * their time grows with the number of steps.
  */
 static int is_rounding(const sh_instance *instance, double t, double h)
 {
@@ -152,16 +150,16 @@ sh_status sh_communication_step(void *handle, double t, double h, const char *fu
     if (instance == NULL) {
         return SH_ERROR;
     }
-    /*@ dynamic_split instance->parameters_unchecked; */ /* for the proof of docs/proof/shell.md */
+    /*@ dynamic_split instance->parameters_unchecked; */ /* prover hint: docs/proof/shell.md */
     if (!(h > 0.0) || !isfinite(h)) {
         sh_report(instance, SH_ERROR,
                   "%s: communicationStepSize = %.9g s; expected a finite number above 0.", function,
                   h);
         return SH_ERROR;
     }
-    /* An importer that adds up its time makes rounding errors. These errors have no effect, as
-     * the ticks follow the sum of all h. A larger, but still small, difference comes from an importer
-     * whose h does not quite fit its times. Then this step also covers it, to end at t + h.
+    /* An importer that adds up step lengths makes rounding errors in t. These errors have no effect, because ticks
+     * depend on the sum of all h. Another importer may pass an h that does not quite fit its times t. Then this step is
+     * a little longer or shorter than h, so that the step ends at t + h.
      */
     length = h;
     late = t - instance->time;
@@ -174,7 +172,7 @@ sh_status sh_communication_step(void *handle, double t, double h, const char *fu
                       function, t, instance->time);
             return SH_ERROR;
         }
-        /* If `whole` is below 0, h is shorter than the rounding. */
+        /* `whole` can only be negative if h is shorter than the rounding error of t. */
         if (fabs(late) > rounding && whole > 0.0 && isfinite(whole)) {
             begin = instance->time;
             length = whole;
