@@ -1,7 +1,7 @@
-# Target coverage: runs the tests of the C code, then prints the share of its branches that they ran.
+# The target coverage runs the tests of the C code and prints the share of the branches that they execute.
 sigmahat_add_packages(coverage)
 file(GLOB tests CONFIGURE_DEPENDS tests/c/test_*.py tests/fmi/test_*.py)
-# These compile programs of their own, without coverage, run no C code, or need more packages.
+# The tests excluded here compile programs without coverage, run no C code, or need more packages.
 list(FILTER tests EXCLUDE REGEX
      "controller|endurance|library_packages|model_description|mutation|sample_loop|stress")
 file(GLOB promises CONFIGURE_DEPENDS tests/proof/test_promises_of_*.py)

@@ -1,10 +1,10 @@
 # sigmahat_add_fmu(NAME STRUCT type STORAGE struct|sides|arrays SOURCES file...
 #                  [LIBRARY target])
 #
-# Adds targets NAME and NAME_FMI3 that build NAME.fmu and its twin for FMI 3.0, fmi3/NAME_FMI3.fmu,
-# from modelDescription/NAME.xml, the FMI shell, the given sources and those of the library. An FMU
-# contains the binary of the host and the sources.
-# STRUCT is the C type that contains the variables, STORAGE how they are stored in it: see
+# Adds the target NAME, which builds NAME.fmu, and the target NAME_FMI3, which builds the FMU
+# fmi3/NAME_FMI3.fmu for FMI 3.0. Both are built from modelDescription/NAME.xml, the FMI shell, the
+# given sources and the sources of the library. An FMU contains all sources and a binary for the host.
+# STRUCT is the C type that contains the variables. STORAGE tells how this type stores them, see
 # harness/sigmahat/export/c_variables.py.
 function(sigmahat_add_fmu name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "STRUCT;STORAGE;LIBRARY" "SOURCES")
@@ -38,13 +38,13 @@ function(sigmahat_add_fmu name)
     DEPENDS ${shared}
     COMMENT "Model descriptions of ${name}" VERBATIM)
 
-  # The model, which knows no version of FMI.
+  # The object files of the model do not depend on the version of FMI.
   add_library(${name}_model OBJECT ${arg_SOURCES} ${dir}/variables.h)
   target_include_directories(${name}_model PRIVATE ${dir} ${source_dir}/fmu_src
                              $<$<BOOL:${arg_LIBRARY}>:$<TARGET_PROPERTY:${arg_LIBRARY},INTERFACE_INCLUDE_DIRECTORIES>>)
   set_target_properties(${name}_model PROPERTIES C_VISIBILITY_PRESET hidden)
 
-  # The files for people: documentation and icons.
+  # Documentation and icons of the FMU.
   file(GLOB pages ${source_dir}/modelDescription/documentation/*.html ${source_dir}/modelDescription/icons/${name}.*)
   set(shown ${dir}/shown)
   set(shown_files
@@ -85,7 +85,7 @@ function(sigmahat_add_fmu name)
       WORKING_DIRECTORY ${source_dir}
       COMMENT "Packing ${target}.fmu" VERBATIM)
     set(all ALL)
-    if(SKBUILD AND fmi EQUAL 3) # a wheel has no use for the twins
+    if(SKBUILD AND fmi EQUAL 3) # a wheel contains no FMUs for FMI 3.0
       set(all "")
       set_target_properties(${target}_binary PROPERTIES EXCLUDE_FROM_ALL TRUE)
     endif()
@@ -94,13 +94,13 @@ function(sigmahat_add_fmu name)
   endforeach()
 endfunction()
 
-# sigmahat_add_estimator(NAME STRUCT type STORAGE struct|sides): an FMU of the C library.
+# sigmahat_add_estimator(NAME STRUCT type STORAGE struct|sides) adds the FMU of an estimator of the C library.
 function(sigmahat_add_estimator name)
   sigmahat_add_fmu(${name} ${ARGN} SOURCES fmu_src/${name}.c fmu_src/estimator_fmu.c
                    LIBRARY sigmahat_c)
 endfunction()
 
-# sigmahat_add_plant(NAME): the FMU of a plant whose equations are in harness/sigmahat/plants.
+# sigmahat_add_plant(NAME) adds the FMU of a plant whose equations are in harness/sigmahat/plants.
 function(sigmahat_add_plant name)
   set(dir ${PROJECT_BINARY_DIR}/fmu/${name})
   set(template ${PROJECT_SOURCE_DIR}/modelDescription/${name}.xml)

@@ -1,5 +1,5 @@
-# Target modelica, a part of release: writes the Modelica package with its C sources to
-# release/sigmahat-modelica.zip.
+# The target modelica, a part of the target release, writes the Modelica package with its C sources
+# to release/sigmahat-modelica.zip.
 set(modelica ${PROJECT_BINARY_DIR}/release/sigmahat-modelica.zip)
 set(modelica_sources ${amalgamation}/sigmahat.c ${amalgamation}/sigmahat.h
                      ${PROJECT_SOURCE_DIR}/fmu_src/noise.c ${PROJECT_SOURCE_DIR}/fmu_src/noise.h)

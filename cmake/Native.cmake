@@ -1,5 +1,5 @@
-# The library of the Python package: the loop over samples, and the estimator over arrays. It is
-# called with ctypes, so it is of a platform but of no Python.
+# The C library of the Python package runs the estimator over samples and over arrays. Python calls this
+# library with ctypes, so it depends on the platform, but not on the version of Python.
 add_library(sigmahat_native MODULE harness/native/sample_loop.c harness/native/joints.c
             ${PROJECT_BINARY_DIR}/fmu/StiffnessEstimator/variables.h)
 get_target_property(library_folders sigmahat_c INCLUDE_DIRECTORIES)

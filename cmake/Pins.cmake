@@ -1,6 +1,6 @@
-# Target pins: writes requirements/*.txt, the versions that the build tree installs with the hashes of
-# their files, from pyproject.toml. A version stays as it is as long as pyproject.toml allows it; for
-# newer versions, remove requirements/test.txt first.
+# The target pins writes requirements/*.txt from pyproject.toml. These files pin the versions and hashes of all
+# packages for the build tree. A pinned version does not change as long as pyproject.toml allows it. To get newer
+# versions, remove requirements/test.txt first.
 set(compile
     ${CMAKE_COMMAND} -E env "UV_CUSTOM_COMPILE_COMMAND=cmake --build build --target pins"
     ${SIGMAHAT_PYTHON} -m uv pip compile --quiet --universal --python-version 3.10

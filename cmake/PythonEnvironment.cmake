@@ -9,7 +9,7 @@
 # SIGMAHAT_FMU_FOLDER (folder for the FMUs). For an environment in the build tree it also sets
 # SIGMAHAT_VENV (its folder), SIGMAHAT_PIP (command that installs packages) and SIGMAHAT_NINJA.
 
-# Uses the modules of this source tree, even if other ones are installed.
+# Commands import the modules of this source tree, even if another version of them is installed.
 set(SIGMAHAT_RUN ${CMAKE_COMMAND} -E env --modify
     PYTHONPATH=path_list_prepend:${CMAKE_CURRENT_SOURCE_DIR}/harness)
 if(SKBUILD)
@@ -42,13 +42,13 @@ endif()
 list(APPEND SIGMAHAT_RUN ${SIGMAHAT_PYTHON} -m)
 set(SIGMAHAT_FMU_FOLDER ${SIGMAHAT_VENV}/share/sigmahat)
 
-# No dependencies: a file of requirements names every package that is needed. Python compiles the
-# modules that are used when they are imported: most are not.
+# pip installs no dependencies, because a file in requirements/ lists every package. pip compiles no
+# modules either, because Python compiles a module at its first import and most are never imported.
 set(SIGMAHAT_PIP ${SIGMAHAT_PYTHON} -m pip install --disable-pip-version-check --no-deps
                  --no-compile)
 
-# sigmahat_add_packages(PURPOSE): adds a target packages_PURPOSE that installs
-# requirements/PURPOSE.txt, and sets the variable of this name to the file that it makes.
+# sigmahat_add_packages(PURPOSE) adds the target packages_PURPOSE, which installs the packages of
+# requirements/PURPOSE.txt. The variable packages_PURPOSE then contains the path of a stamp file.
 function(sigmahat_add_packages purpose)
   set(requirements ${PROJECT_SOURCE_DIR}/requirements/${purpose}.txt)
   set(installed ${SIGMAHAT_VENV}/packages-${purpose})

@@ -1,7 +1,7 @@
-# Target release: writes every FMU and the system to release/, with the binaries of all platforms, and
-# to release/python/ what pip installs: a wheel for each platform, and the source distribution.
+# The target release writes all FMUs and the system to release/, with binaries for all platforms. It also
+# writes a wheel for each platform and the source distribution to release/python/.
 #
-# The cross compiler is a large download, so it is installed only for this target.
+# The cross compiler is a large download, so only the targets release and live install it.
 sigmahat_add_packages(release)
 
 foreach(fmi 2 3)
@@ -47,7 +47,7 @@ add_custom_command(
           pyproject.toml ${packages_release} StiffnessEstimator
   COMMENT "Wheels and source distribution" VERBATIM)
 
-# What is in all of them, and what made them. The Modelica package is a target of its own.
+# The bill of materials lists the components of all released files, and the tools that built them.
 set(bill ${release}/sigmahat.cdx.json)
 add_custom_command(
   OUTPUT ${bill}

@@ -1,7 +1,7 @@
 # sigmahat_add_system(SSP PLANT ESTIMATOR)
 #
-# Writes the file SSP, which contains the FMUs PLANT and ESTIMATOR, connected and with the
-# parameters of Table I. All three are full paths.
+# Writes the file SSP, which contains the connected FMUs PLANT and ESTIMATOR with the parameters of
+# Table I. All three arguments are full paths.
 function(sigmahat_add_system ssp plant estimator)
   set(templates ${PROJECT_SOURCE_DIR}/modelDescription/system)
   file(GLOB sources CONFIGURE_DEPENDS ${templates}/* ${PROJECT_SOURCE_DIR}/harness/sigmahat/joint/templates/*.ssv ${PROJECT_SOURCE_DIR}/harness/sigmahat/fmi/*.py ${PROJECT_SOURCE_DIR}/harness/sigmahat/paper/*.py

@@ -1,5 +1,5 @@
-# Target live: writes the page of docs/live, with plant and estimator as WebAssembly, to live/. The
-# target docs puts it into the site.
+# The target live writes the page of docs/live to live/, with plant and estimator as WebAssembly. The
+# target docs copies this page to the site.
 set(live ${PROJECT_BINARY_DIR}/live)
 set(live_fmus ${SIGMAHAT_FMU_FOLDER}/AwasPlant.fmu ${SIGMAHAT_FMU_FOLDER}/StiffnessEstimator.fmu)
 file(GLOB live_page CONFIGURE_DEPENDS docs/live/*)

@@ -1,8 +1,8 @@
-/* A co-simulation master in plain C for StiffnessEstimator.fmu: docs/how-to/c-master.md.
+/* Co-simulation master in plain C for StiffnessEstimator.fmu, see docs/how-to/c-master.md.
  *
- * master FOLDER LIBRARY: the folder of the unpacked FMU and its shared library. Feeds the
- * estimator with a joint that swings once per second and has a spring of 150 N.m/rad with a
- * torque sensor, for two seconds, and prints the stiffness found.
+ * The call is `master FOLDER LIBRARY`, with the folder of the unpacked FMU and its shared library. The program
+ * simulates a joint with a spring of 150 N.m/rad and a torque sensor. The joint oscillates at 1 Hz for two seconds, and the
+ * estimator receives its measurements. At the end the program prints the estimated stiffness.
  */
 #include <dlfcn.h>
 #include <math.h>
@@ -16,7 +16,7 @@
 static char *description; /* text of modelDescription.xml */
 static void *library;
 
-/* The functions of the FMU that are used here. */
+/* Pointers to all functions of the FMU that this program calls. */
 static struct {
     fmi2InstantiateTYPE *instantiate;
     fmi2SetupExperimentTYPE *setup_experiment;
@@ -36,7 +36,7 @@ static void quit(const char *what, const char *which)
     exit(1);
 }
 
-/* The attribute of the element that begins at `from`, copied into text. */
+/* Copies the value of an attribute into `text`; the XML element begins at `from`. */
 static void attribute(const char *from, const char *name, char *text, size_t size)
 {
     const char *end = from != NULL ? strchr(from, '>') : NULL;
@@ -69,7 +69,7 @@ static fmi2ValueReference reference(const char *variable)
     return (fmi2ValueReference)strtoul(number, NULL, 10);
 }
 
-/* Loads a function of the FMU. memcpy, as C has no cast from object to function pointers. */
+/* Loads a function of the FMU. The code uses memcpy because C cannot cast object pointers to function pointers. */
 static void load(const char *name, void *function)
 {
     void *symbol = dlsym(library, name);
@@ -83,7 +83,7 @@ static void load(const char *name, void *function)
 static void check(fmi2Status status, const char *call)
 {
     if (status > fmi2Warning) {
-        quit("failed:", call); /* the message of the FMU went through the logger */
+        quit("failed:", call); /* the logger has already printed the message of the FMU */
     }
 }
 
@@ -133,7 +133,7 @@ static void load_functions(void)
     load("fmi2FreeInstance", &fmu.free_instance);
 }
 
-/* A new instance, initialised at t = 0. Parameters are set before the initialisation ends. */
+/* Creates an instance of the FMU and initialises it at t = 0. Parameters must be set before the initialisation ends. */
 static fmi2Component start(void)
 {
     static const fmi2CallbackFunctions callbacks = {logger, calloc, free, NULL, NULL};
@@ -185,14 +185,14 @@ int main(int argc, char **argv)
     V_a = reference("filter.V_a");
 
     estimator = start();
-    /* At t_k set what is measured at t_k, then step from t_k to t_k + T: one tick, at t_k. */
+    /* Each iteration sets the measurements of time t_k, then makes a step from t_k to t_k + T with one tick at t_k. */
     for (tick = 0; tick < 2000; ++tick) {
         const double t = tick * T, phi = 0.01 * sin(two_pi * t);
 
         u[0] = 0.5 * sin(two_pi * t); /* theta */
         u[1] = u[0] + phi;            /* q */
         u[2] = k * phi;               /* tau_e_sensor */
-        if (tick == 1000) {           /* a tunable parameter; it acts from this tick on */
+        if (tick == 1000) {           /* a tunable parameter acts from the next tick on */
             check(fmu.set_real(estimator, &V_a, 1, &smoother), "filter.V_a");
         }
         check(fmu.set_real(estimator, inputs, 3, u), "fmi2SetReal");

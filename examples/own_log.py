@@ -1,9 +1,9 @@
-"""The stiffness of a joint from its log: the tutorial, in Python.
+"""Estimates the stiffness of a joint from its log, like the tutorial, but in Python.
 
-The log of the tutorial is in units of a robot: motor encoder in counts, link in degrees, current in
-amperes. For a joint of your own, name its log and the configuration that `sigmahat init` made.
+The log of the tutorial has the motor encoder in counts, the link position in degrees and the
+current in amperes. For your own joint, pass its log and the configuration that `sigmahat init` has written.
 
-Usage: python own_log.py [LOG CONFIGURATION]     writes the results into the folder own_log
+Usage: python own_log.py [LOG CONFIGURATION]     The folder own_log will contain the results.
 """
 
 import sys
@@ -20,7 +20,7 @@ def main(log_file: Path, configuration_file: Path) -> None:
     log = sigmahat.open_log(log_file)
     configuration = sigmahat.read_configuration(configuration_file)
     motor = sigmahat.identify(log, configuration)
-    # Room for deformations and torques that are larger than those of this log.
+    # The ranges allow deformations and torques that are up to 20 % larger than in this log.
     ranges = {"range.phi": 1.2 * motor.phi, "prior.tau_e": 1.2 * motor.torque}
     orders = {"rls.n": motor.n, "rls.symmetric": motor.symmetric}
     parameters = {**configuration.parameters, **ranges, **orders}

@@ -1,9 +1,9 @@
-"""A plant of your own, from equations in CasADi to an FMU, in one file.
+"""Builds the FMU of a user-defined plant from equations in CasADi, and estimates its stiffness.
 
-A pendulum on a spring that hardens, driven by a motor; with it, the estimator. Needs a C compiler
-and CasADi, which `pip install '.[plants]'` adds.
+The plant is a pendulum that a motor drives through a hardening spring. The example needs a C
+compiler and CasADi, which `pip install '.[plants]'` installs.
 
-Usage: python own_plant.py [FOLDER]     writes PendulumPlant.fmu there
+Usage: python own_plant.py [FOLDER]     The program writes PendulumPlant.fmu to FOLDER.
 """
 
 import sys
@@ -17,7 +17,7 @@ except ModuleNotFoundError:
 import sigmahat
 from sigmahat import PlantEquations, PlantVariable, encoder, write_plant_fmu
 
-# The equations. Names are those of the variables of the FMU.
+# The equations of the plant use the names of the variables of the FMU.
 plant = PlantEquations("PendulumPlant")
 tau = plant.input("tau")
 M = plant.parameter("link.M")
@@ -30,7 +30,7 @@ k_1 = plant.parameter("spring.k_1")
 phi_0 = plant.parameter("spring.phi_0")
 counts = plant.parameter("encoder.counts")
 
-# scale: how large a change of the state matters.
+# The scale of a state tells the integrator how large a change of this state is relevant.
 q = plant.state("q", start=plant.parameter("initial.q"), scale=0.01)
 theta = plant.state("theta", start=0.0, scale=0.01)
 q_dot = plant.state("q_dot", start=0.0, scale=1.0)
@@ -49,7 +49,7 @@ plant.output("tau_measured", tau + plant.noise(plant.parameter("noise.variance")
 plant.output("sigma", k_1 * ca.cosh(phi / phi_0))
 plant.output("phi", phi)
 
-# What the model description says of them: unit, description, start value.
+# Unit, description and start value of each variable in the model description of the FMU.
 variables = {
     "tau": PlantVariable("N.m", "Torque of the motor, before its gear"),
     "link.M": PlantVariable("kg.m2", "Inertia of the pendulum", 0.1),
@@ -86,8 +86,8 @@ def main(folder: Path) -> None:
         {
             "RESIDUAL": sigmahat.EstimatorFmu(
                 fmu="StiffnessEstimator",
-                # One transmission without set-point: rls.m = 1; phi and phi^3: rls.n = 2. phi^3 is
-                # some 1e-4, so over 10 000 ticks the ridge 1/(c P_0) must be far below 1e-4.
+                # The torque is a polynomial in phi and phi^3 (rls.n = 2) without set-point.
+                # A large P_0 makes the ridge 1/(c P_0) negligible: phi^3 is only about 1e-4.
                 start={"rls.n": 2, "rls.m": 1, "rls.P_0": 1e28},
                 connections={"theta": "theta_measured", "q": "q_measured", "tau": "tau_measured"},
                 record=["sigma"],

@@ -1,11 +1,11 @@
-"""Stiffness control of the AwAS: its second motor moves the lever arm until the estimated stiffness
-is the one wanted.
+"""Stiffness control of the AwAS: its second motor adjusts the lever arm so that the estimated
+stiffness follows a reference.
 
-The springs of this AwAS are 15 % softer than their data sheet says. Once the loop is closed with
-the estimate, once with the stiffness (29) after the data sheet. While the estimate is not
-confident, the last confident correction of the data sheet is used instead of it.
+The springs of this AwAS are 15 % softer than their data sheet says. The first run controls the
+estimated stiffness, the second run the stiffness (29) from the data sheet. While the estimate is
+not confident, the first run corrects the data sheet by the last confident estimate.
 
-Usage: python stiffness_control.py [FOLDER]     writes stiffness_control.png there
+Usage: python stiffness_control.py [FOLDER]     The folder will contain stiffness_control.png.
 """
 
 import math
@@ -23,35 +23,35 @@ import sigmahat
 T, DURATION = 1e-3, 45.0  # [s]
 K_S, R_0, LEAD = 14220.0, 0.1, 0.0025 / (2 * math.pi)  # data sheet [N/m, m, m/rad]
 MOTION = {"signal.tau.amplitude": 0.3, "signal.tau.frequency": 0.5}  # without it no estimate
-START = 2.0  # until then the lever arm rests and the estimate settles [s]
-GAIN = 20.0  # tau_c for an error of one in the square root of the stiffness
-LARGEST = 8.0  # of tau_c, as in the paper [N.m]: up to some 50 N.m/rad in a second
+START = 2.0  # time at which the lever arm begins to move [s]
+GAIN = 20.0  # gain from the error of the square root of the stiffness to tau_c
+LARGEST = 8.0  # largest magnitude of tau_c, as in the paper [N.m]
 
 
 def wanted(t: float) -> float:
-    """Stiffness that is wanted [N.m/rad]."""
+    """Returns the reference of the stiffness at time t [N.m/rad]."""
     if t < 20:
         return (200.0, 320.0, 150.0)[min(int(t / 7), 2)]
     return 235.0 + 85.0 * math.sin(2 * math.pi * 0.05 * (t - 20))
 
 
 def run(with_estimate: bool) -> NDArray[np.float64]:
-    """One run. Columns: t [s]; commanded, true and estimated stiffness [N.m/rad]; tau_c [N.m]."""
+    """Simulates a run. Columns: t [s]; reference, true, estimated stiffness [N.m/rad]; tau_c."""
     plant: Any = sigmahat.fmu("AwasPlant")
     references = {
         v.name: v.valueReference for v in fmpy.read_model_description(plant).modelVariables
     }
     inputs = ("theta_measured", "q_measured", "tau_measured", "theta_c_measured")
     measured = [references[name] for name in (*inputs, "sigma")]
-    # The torque is exact here, but for noise: no gain error.
+    # The simulated torque has noise, but no gain error.
     estimator = sigmahat.Estimator(
         {"method": "FilteredRegression", "rls.n": 3, "prior.torque_gain": 0.0}
     )
-    correction = 1.0  # of the data sheet, by the last estimate that was confident
+    correction = 1.0  # factor from the data sheet to the last confident estimate
     rows = []
 
     def control(t: float, recorder: Any) -> bool:
-        """After each step of the plant: estimates, and sets the torque for the next one."""
+        """Runs the estimator after each step of the plant and sets the torque for the next step."""
         nonlocal correction
         theta, q, tau, theta_c, true = recorder.fmu.getReal(measured)
         found = estimator.tick(theta, q, tau, theta_c)
@@ -59,9 +59,9 @@ def run(with_estimate: bool) -> NDArray[np.float64]:
         if found["confident"]:
             correction = found["sigma"] / nominal
         used = correction * nominal if with_estimate else nominal
-        # The square root of the stiffness is linear in the lever arm, and the velocity of the
-        # motor nearly in its torque: with a proportional controller the error decays like
-        # exp(-4 t), wherever the lever arm is. A positive torque shortens it.
+        # The square root of the stiffness depends linearly on the length of the lever arm.
+        # The velocity of the motor is nearly proportional to its torque tau_c.
+        # So with a proportional controller, the error of the square root decays like exp(-4 t).
         tau_c = 0.0
         if t >= START:
             error = math.sqrt(wanted(t)) - math.sqrt(max(used, 0.0))
@@ -77,7 +77,7 @@ def run(with_estimate: bool) -> NDArray[np.float64]:
 
 
 def main(folder: Path) -> None:
-    """Both runs, the error of each over the last period of the sine, and the picture."""
+    """Simulates both runs, prints their errors over the last period of the sine, and plots both."""
     figure = Figure(figsize=(8, 7), layout="constrained")
     above, middle, below = figure.subplots(3, 1, sharex=True, height_ratios=(2, 2, 1))
     for axes, title, with_estimate, color in (

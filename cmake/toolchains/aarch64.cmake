@@ -1,4 +1,4 @@
-# 64-bit Arm with Linux.
+# Toolchain for Linux on 64-bit Arm.
 #
 # Debian and Ubuntu: apt-get install gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user
 set(CMAKE_SYSTEM_NAME Linux)

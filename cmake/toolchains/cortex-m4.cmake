@@ -1,4 +1,4 @@
-# Cortex-M4F: it has a floating-point unit for float only; double uses functions of the compiler.
+# The Cortex-M4F has a floating-point unit for float only. Arithmetic in double uses functions of the compiler.
 set(cpu cortex-m4)
 set(fpu fpv4-sp-d16)
 set(board mps2-an386)

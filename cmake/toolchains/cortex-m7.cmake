@@ -1,4 +1,4 @@
-# Cortex-M7 with a floating-point unit for double.
+# The Cortex-M7 has a floating-point unit for double.
 set(cpu cortex-m7)
 set(fpu fpv5-d16)
 set(board mps2-an500)

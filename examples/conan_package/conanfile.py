@@ -1,4 +1,4 @@
-"""A program that uses the package of the C library; ``conan create c`` runs it."""
+"""Conan recipe of a test program for the package of the C library; ``conan create c`` runs it."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-/* The stiffness of a simulated spring of 150 N.m/rad, whose torque a sensor measures. */
+/* Estimates the stiffness of a simulated spring of 150 N.m/rad, whose torque a sensor measures. */
 #include <math.h>
 #include <stdio.h>
 

@@ -1,6 +1,6 @@
-/* What the estimator costs on this controller: instructions and stack of a tick, RAM of an
- * instance. The orders are 6 in the deformation and 3 in the set-point, or SH_MAX_N and SH_MAX_M
- * if these are smaller.
+/* Measures the cost of the estimator on a microcontroller: instructions and stack of a tick, and RAM of an instance.
+ * The polynomial has order 6 in the deformation and order 3 in the set-point, or SH_MAX_N and SH_MAX_M if these are
+ * smaller.
  */
 #include <math.h>
 #include <stdio.h>
@@ -16,7 +16,7 @@ static sh_estimator estimator;
 static sh_estimate estimate;
 static sh_measurement z;
 
-/* The joint of hardware.h with a slow set-point. */
+/* Reads a sample of the joint of hardware.h and adds a slowly changing set-point. */
 static void measure(int k)
 {
     z = hardware_read();
@@ -28,7 +28,7 @@ static void tick(void)
     sh_estimator_tick(&estimator, &parameters, &z, &estimate);
 }
 
-/* A loop of 2 instructions per turn, to measure the counts of the clock per instruction. */
+/* A loop with two instructions per iteration, which serves to measure the clock counts per instruction. */
 static void loop(void)
 {
     uint32_t turns = 100000;
@@ -40,7 +40,7 @@ static void nothing(void)
 {
 }
 
-/* Counts of the clock that a function takes; the clock has 24 bits and counts down. */
+/* Returns the clock counts that a function takes. The clock has 24 bits and counts down. */
 static uint32_t counts(void (*function)(void))
 {
     const uint32_t before = hardware_clock();
@@ -49,14 +49,14 @@ static uint32_t counts(void (*function)(void))
     return (before - hardware_clock()) & 0xffffffu;
 }
 
-/* Bytes of the stack below this function that another one writes to. */
+/* Returns how many bytes of the stack a called function uses. */
 static unsigned __attribute__((noinline)) stack(void (*function)(void))
 {
     volatile unsigned char *const top = __builtin_frame_address(0);
     unsigned depth = PAINTED;
     unsigned i;
 
-    for (i = 64; i < PAINTED; ++i) { /* the frame of this function is in the first 64 */
+    for (i = 64; i < PAINTED; ++i) { /* the first 64 bytes contain the frame of stack() */
         top[-(int)i] = PAINT;
     }
     function();
@@ -66,7 +66,7 @@ static unsigned __attribute__((noinline)) stack(void (*function)(void))
     return depth;
 }
 
-/* Leaves the columns of the spring, the bias, and the friction of the motor. */
+/* Removes all columns of the regression except for the spring, the bias and the friction of the motor. */
 static void remove_columns(void)
 {
     const sh_prior_parameters before = parameters.prior;

@@ -1,4 +1,4 @@
-/* What main.c needs from the hardware. Write these functions for yours. */
+/* The interface of main.c to the hardware. Implement these functions for your own hardware. */
 #ifndef HARDWARE_H
 #define HARDWARE_H
 
@@ -6,26 +6,26 @@
 
 #include "sigmahat.h"
 
-/* Calls SysTick_Handler `rate` times per second from now on. */
+/* Starts a timer that calls SysTick_Handler `rate` times per second. */
 void hardware_start_ticks(uint32_t rate);
 
-/* Reads the encoders of motor and link, both behind the gear [rad], and the torque of the motor before its gear, from
- * its current [N.m].
+/* Reads the positions of motor and link after the gear [rad] from their encoders. Reads the torque of the motor before
+ * its gear [N.m] from the motor current.
  */
 sh_measurement hardware_read(void);
 
-/* Counts of the clock since this interrupt was due, and counts in one period. */
+/* Return the clock counts since the current interrupt was due, and the clock counts of one period. */
 uint32_t hardware_elapsed(void);
 uint32_t hardware_period(void);
 
-/* For cost.c: a clock of 24 bits that counts down without interrupts. */
+/* Start and read a clock for cost.c, which has 24 bits and counts down without interrupts. */
 void hardware_start_clock(void);
 uint32_t hardware_clock(void);
 
-/* Sleeps until an interrupt. */
+/* Sleeps until the next interrupt. */
 void hardware_sleep(void);
 
-/* Between these two calls there are no interrupts. */
+/* Between the calls of these two functions the processor handles no interrupts. */
 void hardware_disable_interrupts(void);
 void hardware_enable_interrupts(void);
 

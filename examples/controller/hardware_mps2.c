@@ -1,15 +1,15 @@
-/* Arm's board MPS2 (in QEMU: mps2-an386, mps2-an500), with a simulated joint. */
+/* Implements hardware.h for the board MPS2 of Arm (in QEMU: mps2-an386, mps2-an500), with a simulated joint. */
 #include "hardware.h"
 
 #include <math.h>
 
-/* The timer SysTick of the processor, which counts down. */
+/* Registers of SysTick, the timer of the processor, which counts down. */
 typedef struct {
     uint32_t control, reload, value;
 } timer;
 static volatile timer *const SYSTICK = (volatile timer *)0xe000e010;
 
-enum { CLOCK = 25000000 }; /* of the processor [Hz] */
+enum { CLOCK = 25000000 }; /* clock frequency of the processor [Hz] */
 
 static uint32_t samples;
 
@@ -17,10 +17,10 @@ void hardware_start_ticks(uint32_t rate)
 {
     SYSTICK->reload = CLOCK / rate - 1;
     SYSTICK->value = 0;
-    SYSTICK->control = 7; /* on, with interrupt, clock of the processor */
+    SYSTICK->control = 7; /* timer on, interrupt on, clock of the processor as source */
 }
 
-/* Interrupt control: bit 26 says that the next interrupt of SysTick is waiting already. */
+/* Register for the control of interrupts. Its bit 26 is 1 while an interrupt of SysTick is pending. */
 static volatile uint32_t *const ICSR = (volatile uint32_t *)0xe000ed04;
 
 uint32_t hardware_elapsed(void)
@@ -39,7 +39,7 @@ void hardware_start_clock(void)
 {
     SYSTICK->reload = 0xffffff;
     SYSTICK->value = 0;
-    SYSTICK->control = 5; /* on, without interrupt */
+    SYSTICK->control = 5; /* timer on, interrupt off */
 }
 
 uint32_t hardware_clock(void)
@@ -62,8 +62,8 @@ void hardware_enable_interrupts(void)
     __asm volatile("cpsie i" ::: "memory");
 }
 
-/* A motor with the data of the start values that swings by 0.5 rad at 1 Hz, and a transmission
- * of 150 N.m/rad: the motor equation (3) of the paper gives the torque.
+/* Simulates a motor that moves as a sine of 0.5 rad at 1 Hz, and a transmission with a stiffness of 150 N.m/rad. The
+ * motor torque follows from the motor equation (3) of the paper, with the default motor data of the estimator.
  */
 sh_measurement hardware_read(void)
 {

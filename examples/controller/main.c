@@ -1,6 +1,6 @@
-/* The estimator in the interrupt of a control loop at 1 kHz: docs/controller.md.
+/* Example of the estimator in the interrupt of a control loop at 1 kHz, see docs/controller.md.
  *
- * It runs for three seconds, changes a parameter after two, and prints the stiffness.
+ * The program runs for three seconds, changes a parameter after two seconds, and prints the stiffness.
  */
 #include <stdio.h>
 
@@ -9,12 +9,12 @@
 
 enum { RATE = 1000, SECONDS = 3 };
 
-/* All the memory that the estimator needs. */
+/* The estimator needs no other memory than these three structs. */
 static sh_parameters parameters;
 static sh_estimator estimator;
 static sh_estimate estimate;
 
-/* From the interrupt to the main loop. The processor reads a number of one word as a whole. */
+/* Values that the interrupt passes to the main loop. The processor reads a variable of one word atomically. */
 static volatile sh_real sigma, sigma_std;
 static volatile uint32_t ticks, longest, missed;
 
@@ -26,11 +26,11 @@ void SysTick_Handler(void)
     uint32_t elapsed;
 
     if (sh_estimator_tick(&estimator, &parameters, &z, &estimate)) {
-        ++missed; /* a measurement was not finite: the estimate did not change */
+        ++missed; /* a measurement was not finite, so the estimate did not change */
     }
     sigma = estimate.sigma;
     sigma_std = estimate.sigma_std;
-    /* Here a controller would use estimate.sigma and set its torque. */
+    /* At this place a controller would use estimate.sigma to compute its torque. */
     ++ticks;
     elapsed = hardware_elapsed();
     if (elapsed > longest) {
@@ -38,8 +38,8 @@ void SysTick_Handler(void)
     }
 }
 
-/* A joint with one transmission and no second motor that sets its stiffness: order 1 in the
- * set-point.
+/* Sets the parameters for a joint without a second motor that adjusts the stiffness. Therefore rls.m, the number of
+ * powers of the set-point, is 1.
  */
 static void configure(sh_parameters *p)
 {
@@ -48,8 +48,8 @@ static void configure(sh_parameters *p)
     p->samplePeriod = (sh_real)1 / RATE;
     p->rls.n = 2;
     p->rls.m = 1;
-    p->range.phi = (sh_real)0.03; /* largest deformation [rad] */
-    p->prior.tau_e = 5;           /* about the largest torque [N.m] */
+    p->range.phi = (sh_real)0.03; /* largest expected deformation [rad] */
+    p->prior.tau_e = 5;           /* approximately the largest torque [N.m] */
 }
 
 int main(void)
@@ -66,7 +66,7 @@ int main(void)
     while (ticks < RATE * (SECONDS - 1)) {
         hardware_sleep();
     }
-    /* Parameters change between ticks, not in the middle of one. */
+    /* Disabled interrupts make sure that parameters change between two ticks, and not during a tick. */
     hardware_disable_interrupts();
     parameters.noise.tau = (sh_real)2e-3;
     hardware_enable_interrupts();

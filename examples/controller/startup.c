@@ -1,11 +1,11 @@
-/* The start of a Cortex-M with a floating-point unit, before main, and its interrupt table. */
+/* Startup code and interrupt table for a Cortex-M with a floating-point unit. */
 #include <stdint.h>
 
-void stack_top(void); /* not a function but an address, from mps2.ld */
-void _start(void);    /* from the C library: clears .bss, calls main and exit */
+void stack_top(void); /* stack_top is not a function, but an address from mps2.ld */
+void _start(void);    /* function of the C library that clears .bss, calls main and exit */
 void SysTick_Handler(void);
 
-/* For programs without interrupts. */
+/* Default handler for programs without interrupts. */
 __attribute__((weak)) void SysTick_Handler(void)
 {
 }
@@ -16,11 +16,11 @@ static void reset(void)
 
     *CPACR = *CPACR | 0xfu << 20; /* the floating-point unit is off after a reset */
     __asm volatile("dsb\n\tisb");
-    /* A program in flash would copy .data to RAM here. The emulator has already loaded it there. */
+    /* Here a program in flash would copy .data to RAM. The emulator has already loaded .data into RAM. */
     _start();
 }
 
-/* A second fault inside a fault stops the processor, and then the emulator prints a message. */
+/* Causes a second fault within the handler of a fault. The processor then stops and the emulator prints a message. */
 static void fault(void)
 {
     __asm volatile("udf #0");
@@ -29,7 +29,7 @@ static void fault(void)
 __attribute__((section(".vectors"), used)) static void (*const vectors[16])(void) = {
     stack_top,
     reset,
-    [2] = fault, /* NMI, hard, memory, bus and usage faults */
+    [2] = fault, /* handler of NMI and of hard, memory, bus and usage faults */
     [3] = fault,
     [4] = fault,
     [5] = fault,

@@ -1,8 +1,8 @@
-/* The estimator in a loop at 1 kHz under Linux, which sends each estimate as a datagram of JSON.
+/* Runs the estimator in a loop at 1 kHz under Linux and sends each estimate as a JSON datagram.
  *
- *     live [SECONDS [PORT]]      60 s and port 9871 of this computer, if nothing is said
+ *     live [SECONDS [PORT]]      the defaults are 60 s and port 9871 of this computer
  *
- * At the end it prints how late the loop woke up at most, and how long the longest tick took.
+ * At the end the program prints the largest delay of the loop and the duration of the longest tick.
  */
 #define _GNU_SOURCE
 
@@ -28,7 +28,7 @@
 #define PRIORITY 80
 
 static sh_parameters parameters;
-static sh_estimator estimator; /* static: it is too large for many stacks */
+static sh_estimator estimator; /* static, because an estimator is too large for many stacks */
 static sh_estimate estimate;
 
 static int64_t now_ns(void)
@@ -52,7 +52,7 @@ static int start(void)
     parameters.motor.gamma = (sh_real)robot_gear;
     parameters.motor.B = (sh_real)robot_B;
     parameters.motor.D_theta = (sh_real)robot_D_theta;
-    parameters.prior.B = (sh_real)0.05; /* B is known to 5 % */
+    parameters.prior.B = (sh_real)0.05; /* motor.B has a standard deviation of 5 % */
     parameters.range.phi = (sh_real)0.04;
     parameters.prior.tau_e = (sh_real)20;
     parameters.rls.m = 1; /* no motor sets the stiffness */
@@ -65,7 +65,7 @@ static int start(void)
     return 0;
 }
 
-/* Asks for what keeps the loop on time. Without the right to it, it runs as it is. */
+/* Requests real-time priority and locked memory. Without these permissions the timing of the loop is less precise. */
 static void ask_for_priority(void)
 {
     const struct sched_param priority = {.sched_priority = PRIORITY};
@@ -78,7 +78,7 @@ static void ask_for_priority(void)
     }
 }
 
-/* One line for PlotJuggler and `sigmahat`; nobody need listen. */
+/* Sends an estimate as one line for PlotJuggler and `sigmahat`, also if no program receives it. */
 static void send_estimate(int out, double t)
 {
     char line[512];
@@ -136,7 +136,7 @@ int main(int count, char *arguments[])
             perror("timer");
             return 1;
         }
-        for (; periods > 1 && k < samples; periods--, k++) { /* the loop was late: samples lost */
+        for (; periods > 1 && k < samples; periods--, k++) { /* samples of a late loop are lost */
             const sh_measurement none = {.theta = (sh_real)NAN};
             (void)sh_estimator_tick(&estimator, &parameters, &none, &estimate);
             missed++;

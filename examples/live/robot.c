@@ -1,4 +1,4 @@
-/* A link of 1.2 kg.m2 on a spring of 600 N.m/rad moves as two sines; all else follows from that. */
+/* Simulates a link of 1.2 kg.m2 on a spring of 600 N.m/rad. The link moves as a sum of two sines. */
 #include "robot.h"
 
 #include <math.h>
@@ -13,7 +13,7 @@ robot_sample robot_read(double t)
     double q = 0.0, theta = 0.0, theta_dot = 0.0, theta_ddot = 0.0, torque = 0.0;
     for (int i = 0; i < 2; i++) {
         const double w = frequency[i], f = M * w * w * amplitude[i];
-        const double motor = amplitude[i] - f / k; /* the link: M q'' = -k (q - theta) */
+        const double motor = amplitude[i] - f / k; /* from M q'' = -k (q - theta) */
         q += amplitude[i] * sin(w * t);
         torque += f * sin(w * t);
         theta += motor * sin(w * t);

@@ -1,9 +1,9 @@
-"""Records knee.csv, the log of the tutorial: a knee with a series elastic actuator, simulated.
+"""Simulates a knee with a series elastic actuator and writes knee.csv, the log of the tutorial.
 
-The spring hardens with its deformation, the motor has Coulomb friction. 20 s at 250 Hz; the motor
-encoder is a counter of 16 bits that wraps, the link is in degrees, the current in amperes.
+The spring hardens with its deformation, and the motor has Coulomb friction. The log lasts 20 s
+at 250 Hz. It has a 16-bit counter of the motor, the link in degrees and the current in amperes.
 
-Usage: python record.py [FOLDER]     writes knee.csv there, always the same bytes
+Usage: python record.py [FOLDER]     The program writes an identical knee.csv in every call.
 """
 
 import math
@@ -36,7 +36,7 @@ JOINT = {
 
 
 def record(path: Path) -> sigmahat.Recording:
-    """Writes the log. Returns the recording with the true stiffness and deformation."""
+    """Writes the log. Returns the recording of the joint with true stiffness and deformation."""
     torque = [sigmahat.Sine(0.16, 0.4), sigmahat.Sine(0.14, 1.3), sigmahat.Sine(0.12, 4.1)]
     plant = sigmahat.Plant(
         fmu="RealJointPlant",
