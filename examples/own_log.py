@@ -1,7 +1,7 @@
 """Estimates the stiffness of a joint from its log, like the tutorial, but in Python.
 
 The log of the tutorial has the motor encoder in counts, the link position in degrees and the
-current in amperes. For your own joint, pass its log and the configuration that `sigmahat init` has written.
+current in amperes. For your own joint, pass its log and its configuration from `sigmahat init`.
 
 Usage: python own_log.py [LOG CONFIGURATION]     The folder own_log will contain the results.
 """

@@ -1,4 +1,4 @@
-"""Where the tests find what the build made, and which tests run first."""
+"""Fixtures with the paths of build products, and the order in which tests run."""
 
 import os
 import sys
@@ -21,13 +21,13 @@ if "SIGMAHAT_TOOLS" in os.environ:
 
 @pytest.fixture(scope="session")
 def build() -> Path:
-    """Build tree, from SIGMAHAT_BUILD or ``build`` in the checkout."""
+    """Path of the build tree: the variable SIGMAHAT_BUILD, or ``build`` in the repository."""
     return Path(os.environ.get("SIGMAHAT_BUILD", Path(__file__).parent.parent / "build"))
 
 
 @pytest.fixture(scope="session")
 def c(build: Path) -> "Library":
-    """The library in C, which the environment of `reproduce` cannot call."""
+    """The C library as a Python object. The environment of `reproduce` cannot load the library."""
     from c_library import load
 
     return load(build)
@@ -35,19 +35,19 @@ def c(build: Path) -> "Library":
 
 @pytest.fixture(scope="session")
 def fmi3(build: Path) -> Fmi:
-    """FMI 3.0: the twins of the FMUs, with the binary of this machine."""
+    """Loader of the FMUs for FMI 3.0, with the binary of this machine."""
     return Fmi(Instance3, lambda name: build / "fmi3" / f"{name}_FMI3.fmu")
 
 
 @pytest.fixture(params=["fmi2", "fmi3"])
 def fmi(request: pytest.FixtureRequest, fmi3: Fmi) -> Fmi:
-    """Each version of FMI in turn."""
+    """Loader of the FMUs for FMI 2.0, then for FMI 3.0."""
     return FMI2 if request.param == "fmi2" else fmi3
 
 
 @pytest.fixture(scope="session")
 def released(build: Path) -> Path:
-    """Folder of the FMUs as ``cmake --workflow --preset release`` makes them."""
+    """Folder with the released FMUs, which ``cmake --workflow --preset release`` builds."""
     folder = build / "release"
     if not folder.is_dir():
         pytest.fail("there is no release to test; make it: cmake --workflow --preset release")
@@ -56,7 +56,7 @@ def released(build: Path) -> Path:
 
 @pytest.fixture(scope="session")
 def site(build: Path) -> Path:
-    """Folder of the documentation as ``cmake --workflow --preset docs`` makes it."""
+    """Folder of the HTML documentation, which ``cmake --workflow --preset docs`` builds."""
     folder = build / "site"
     if not (folder / "index.html").is_file():
         pytest.fail("there is no site to test; make it: cmake --workflow --preset docs")
@@ -64,14 +64,14 @@ def site(build: Path) -> Path:
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Skips what the preset `complete` runs.
+    """Skips the slow tests, which only the preset `complete` runs.
 
-    In several processes, the files with slow tests come first: a long one at the end would leave
-    the other processes without work.
+    If several processes run the tests, files with slow tests come first. A slow test at the end
+    would leave the other processes idle.
     """
     slow_files = {item.path for item in items if item.get_closest_marker("slow")}
     for item in items:
         if item.get_closest_marker("complete") and "SIGMAHAT_COMPLETE" not in os.environ:
             item.add_marker(pytest.mark.skip(reason="runs with SIGMAHAT_COMPLETE=1"))
-    if hasattr(config, "workerinput"):  # one of the processes of pytest-xdist
+    if hasattr(config, "workerinput"):  # in a worker process of pytest-xdist
         items.sort(key=lambda item: item.path not in slow_files)

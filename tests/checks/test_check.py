@@ -1,4 +1,4 @@
-"""`sigmahat check`: wrong configurations of one good log, and good logs."""
+"""Tests of `sigmahat check` with good logs, and with wrong configurations of a good log."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -48,7 +48,7 @@ PROPOSED = {
     "torque 10 ms late": pytest.approx(0.010, abs=0.0005),
     "torque geared twice": 1.0,
 }
-"""The right value, of those that a log shows."""
+"""The right value of each key for which a log can show it."""
 
 
 @pytest.mark.parametrize("name", WRONG)
@@ -56,7 +56,7 @@ def test_a_wrong_key_is_named_first_with_the_right_value(name: str) -> None:
     old, new, keys = WRONG[name]
     assert old in RIGHT
     found = checked(knee_log(), RIGHT.replace(old, new))
-    if name == "torque constant + 10 %":  # no log can show it
+    if name == "torque constant + 10 %":  # no log shows this error
         assert not found.is_wrong
         assert keys[0] in [each.key for each in found.of(Severity.RESTS_ON)]
     else:
@@ -68,7 +68,7 @@ def test_a_wrong_key_is_named_first_with_the_right_value(name: str) -> None:
 
 
 EVEN_POWERS = RIGHT.replace("rls.n = 1", "rls.symmetric = false\nrls.n = 6")
-"""As after identify, which chooses a polynomial with even powers for most joints."""
+"""A configuration as `identify` writes it for most joints: the polynomial has even powers, too."""
 
 
 @pytest.mark.parametrize(
@@ -80,7 +80,7 @@ EVEN_POWERS = RIGHT.replace("rls.n = 1", "rls.symmetric = false\nrls.n = 6")
     ],
 )
 def test_a_wrong_gear_ratio_is_named(gear: float, gamma: bool, right: str) -> None:
-    """Whether motor.gamma is as wrong, because it is that of the encoder, or right."""
+    """GIVEN a wrong gear ratio of the encoder, and a motor.gamma that is right or equally wrong."""
     text = right.replace("gear_ratio = 100", f"gear_ratio = {gear}")
     if gamma:
         text = text.replace("gamma = 100", f"gamma = {abs(gear)}")
@@ -91,7 +91,7 @@ def test_a_wrong_gear_ratio_is_named(gear: float, gamma: bool, right: str) -> No
 @pytest.mark.parametrize("hold", [0.0, 0.05])
 @pytest.mark.parametrize("gear", [10.0, 1000.0, 0.01, -100.0])
 def test_a_wrong_gear_ratio_is_named_if_a_hand_moves_the_link(gear: float, hold: float) -> None:
-    """Then the torque is none, or that of a controller: it looks like the torque of a spring."""
+    """GIVEN a motor torque that is zero, or the torque of a controller that acts like a spring."""
     right = EVEN_POWERS.replace("range.phi = 0.03", "range.phi = 0.05")
     log = log_by_hand(hold)
     assert wrong(log, right) == []
@@ -113,7 +113,7 @@ def test_a_stiffness_that_doubles_is_no_gear_ratio(change: float, right: str) ->
 
 
 def test_a_gear_ratio_upside_down_is_no_swap_of_columns_in_one_unit() -> None:
-    """With both columns in rad, swapped columns would move alike, too."""
+    """GIVEN motor and link in rad, an inverted gear ratio could be mistaken for swapped columns."""
     log = joint_log(KNEE, 1e-3)
     columns = {**knee_log(), "motor_rad": GEAR * log["theta"], "link_rad": log["q"]}
     text = RIGHT.replace('"motor_counts"\nunit = "counts"\ncounts_per_turn = 4096', '"motor_rad"')
@@ -166,7 +166,7 @@ def test_a_link_that_is_locked_on_purpose_needs_no_column() -> None:
 
 
 def parameters(plant: Mapping[str, float], T: float) -> str:
-    """A configuration of a joint in rad and N.m, its motor data some per cent wrong."""
+    """A configuration in rad and N.m for a joint whose motor data are wrong by some per cent."""
     return configured(
         f"samplePeriod = {T}",
         f"motor.B = {1.05 * plant['motor.B']}",
@@ -234,8 +234,8 @@ def test_single_samples_that_were_lost_are_counted() -> None:
 def test_a_lost_sample_of_a_counter_differs_from_one_that_wraps(
     sample: int, are_lost: bool
 ) -> None:
-    """GIVEN a counter of 16 bits whose largest value is `sample`, and there another value, THEN
-    this sample is lost, unless it is one count more, over the wrap."""
+    """GIVEN a 16-bit counter with a wrong value in place of its largest value `sample`, THEN this
+    sample counts as lost, unless the wrong value is one count more, after the wrap."""
     counts = knee_log()["motor_counts"]
     largest = int(np.argmax(counts))
     wrapped = np.mod(counts - counts[largest] + sample, 65_536)
@@ -280,7 +280,7 @@ def test_a_torque_that_is_only_noise_is_noted() -> None:
     for hold, noted in ((0.0, True), (0.05, False)):
         found = checked(log_by_hand(hold), RIGHT)
         assert (Kind.NO_TORQUE in [each.kind for each in found.findings]) is noted
-    # WHEN B is not known either, the stiffness is negative, which says nothing of a sign
+    # WHEN B is not known either, `check` does not report a negative stiffness as a wrong sign.
     text = RIGHT.replace("motor.B = 1.05e-4\n", "").replace("prior.B = 0.1", "prior.B = 1000")
     found = checked(log_by_hand(0.0), text)
     assert not any(each.about == "NegativeStiffness" for each in found.findings)
@@ -295,7 +295,7 @@ def test_the_command(shell: Shell) -> None:
     assert (found["key"], found["proposed"]) == ("ports.theta.counts_per_turn", 4096)
     said = shell.refused("check knee.csv --config none.toml")
     assert said.startswith("sigmahat: error: none.toml: No such file")
-    # THEN identify and estimate end with the same
+    # THEN identify and estimate report the same finding as check.
     said = shell.run("identify knee.csv --config wrong.toml --dry-run")
     assert "ports.theta.counts_per_turn" in said
     assert shell.json("estimate knee.csv")["checks"]["wrong"] is False

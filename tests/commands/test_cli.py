@@ -1,4 +1,4 @@
-"""The command line, as a user meets it."""
+"""Tests of the command line from the view of a user."""
 
 import csv
 import os
@@ -65,7 +65,7 @@ def test_json_of_reproduce_is_its_table(shell: Shell) -> None:
 
 
 def test_bash_completes(tmp_path: Path) -> None:
-    """With the line that the page says belongs into .bashrc."""
+    """GIVEN the line of .bashrc that the documentation recommends, THEN bash completes commands."""
     bash = need("bash")
     page = (Path(__file__).parents[2] / "docs" / "start.md").read_text(encoding="utf-8")
     (line,) = re.findall(r"`(eval [^`]*bash_source[^`]*)`", page)
@@ -121,7 +121,7 @@ def test_a_command_imports_what_it_uses(command: str, slow: str, tmp_path: Path)
         (f"{MOTION} --torque nan", ["expected a number, got nan"]),
         (f"{MOTION} missing.toml", ["missing.toml"]),
         pytest.param(
-            "reproduce --out /proc/sigmahat",  # nobody may write there
+            "reproduce --out /proc/sigmahat",  # a folder without write access
             ["cannot write /proc/sigmahat"],
             marks=pytest.mark.skipif(not Path("/proc/self").exists(), reason="no /proc"),
         ),
@@ -139,7 +139,7 @@ def test_folder_that_is_a_file(out: str, shell: Shell) -> None:
     started = time.monotonic()
     line = shell.refused(f"reproduce --seeds 500 --out {out}")
     assert "file is a file" in line or "choose another folder with --out" in line
-    assert time.monotonic() - started < 30  # refused before anything is computed
+    assert time.monotonic() - started < 30  # the command fails before any computation
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
@@ -173,7 +173,7 @@ def test_fmus_not_built(
     [("reproduce", "1", 0.2), ("reproduce", "100", 1.0), ("compare", "100", 3.5)],
 )
 def test_interrupt(name: str, seeds: str, delay: float, tmp_path: Path) -> None:
-    """Ctrl-C reaches the whole process group, at any time after the start of Python."""
+    """The signal of Ctrl-C goes to all processes of the command, at any time after its start."""
     started = (
         "import sys, sigmahat.cli as c; run = c.cli.main; "
         "c.cli.main = lambda *a, **k: print(flush=True) or run(*a, **k); sys.exit(c.main())"
@@ -186,7 +186,7 @@ def test_interrupt(name: str, seeds: str, delay: float, tmp_path: Path) -> None:
     time.sleep(delay)
     os.killpg(process.pid, signal.SIGINT)
     output, errors = process.communicate(timeout=30)
-    # Python ends by the signal itself if that came while it was importing; to a shell it is 130.
+    # If the signal arrives during an import, it ends Python directly; a shell reports this as 130.
     assert process.returncode in (130, -signal.SIGINT)
     assert output == ""
     assert errors.strip() == "sigmahat: interrupted"

@@ -1,4 +1,4 @@
-"""A package that is not installed: one line names it and the command that installs it."""
+"""If a package is missing, the error is one line that names the package and how to install it."""
 
 import shlex
 import subprocess
@@ -26,7 +26,7 @@ sys.meta_path.insert(0, Without)
 def run_without(
     module: str, *arguments: str, cwd: Path, program: str = "sys.exit(main(sys.argv[2:]))"
 ) -> subprocess.CompletedProcess[str]:
-    """Runs a command, or another program, as if a module were not installed."""
+    """Runs a command of sigmahat, or another program, as if a module were not installed."""
     command = [sys.executable, "-c", WITHOUT + program, module, *arguments]
     return subprocess.run(command, cwd=cwd, capture_output=True, text=True)
 

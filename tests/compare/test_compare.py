@@ -1,4 +1,4 @@
-"""The results of `sigmahat compare` and their text. The bounds of FilteredRegression."""
+"""Results and printed table of `sigmahat compare`, and upper bounds for FilteredRegression."""
 
 import csv
 import math
@@ -18,7 +18,7 @@ from sigmahat.compare.job import MOTOR, Row, compare
 from sigmahat.compare.table import table
 
 FRICTION = "r(0) = 70 mm, Coulomb friction 0.02 N.m"
-BOUNDS = {  # MSREP [%] by group and case, for 0.1, 0.3, 1, 3, 8 and 20 Hz
+BOUNDS = {  # largest MSREP [%] at 0.1, 0.3, 1, 3, 8 and 20 Hz
     ("r(0) = 70 mm", "D_theta +10 %"): (5.0, 2.0, 0.5, 0.4, 0.3, 0.4),
     ("r(0) = 70 mm", "D_theta -10 %"): (5.0, 2.0, 0.5, 0.4, 0.3, 0.4),
     (FRICTION, "D_theta +10 %"): (3.0, 1.0, 1.0, 1.0, 1.0, 3.0),
@@ -30,12 +30,12 @@ FREQUENCIES = ("0.1 Hz", "0.3 Hz", "1 Hz", "3 Hz", "8 Hz", "20 Hz")
 
 @pytest.fixture(scope="module")
 def runs() -> list[list[Row]]:
-    """The table of seed 1, and that of seed 2."""
+    """Two tables of the comparison, with seed 1 and with seed 2."""
     return [compare(JOINTS, [seed], processes=2) for seed in (1, 2)]
 
 
 def without_misfits(joint: Joint) -> Joint:
-    """The same joint, whose estimators have no columns for misfits."""
+    """Returns a copy of a joint whose estimators have no regression columns for model errors."""
     estimators = {
         name: replace(each, start={**each.start, **WITHOUT_MISFITS})
         for name, each in joint.scenario.estimators.items()
@@ -44,7 +44,7 @@ def without_misfits(joint: Joint) -> Joint:
 
 
 def mean(runs: list[list[Row]], k: int, method: str) -> float:
-    """MSREP of a row over the runs [%]."""
+    """Mean error MSREP of row k over all runs [%]."""
     return float(np.mean([run[k].error(method) for run in runs]))
 
 
@@ -68,11 +68,11 @@ def test_better_than_the_paper_in_every_row_with_wrong_motor_data(runs: list[lis
 
 
 def test_finds_the_error_of_the_friction(runs: list[list[Row]]) -> None:
-    """From 0.3 Hz on within 10 % of the error, on the AwAS. Not at 0.3 Hz if B is unknown too:
-    inertia and friction by the torque of the motor look alike there, and no accuracy is asked. At
-    20 Hz, where the motor reverses every 25 ms, friction and a delay of its reversals look nearly
-    alike: within 25 %. So with Coulomb friction at 0.3 Hz, where 20 seeds have a standard
-    deviation of 12 %."""
+    """From 0.3 Hz on, the AwAS estimates the error of D_theta within 10 % of this error. If B is
+    unknown too, no accuracy is required at 0.3 Hz, where inertia resembles friction. The tolerance
+    is 25 % at 20 Hz, because friction resembles a delay if the motor reverses every 25 ms. The
+    tolerance with Coulomb friction at 0.3 Hz is also 25 %, because estimates of 20 seeds have a
+    standard deviation of 12 %."""
     for row in (row for run in runs for row in run):
         motion = labels.motion(row.joint)
         if motion not in FREQUENCIES[1:]:
@@ -88,8 +88,8 @@ def test_finds_the_error_of_the_friction(runs: list[list[Row]]) -> None:
 
 @pytest.mark.slow("many seeds")
 def test_start_up_with_exact_motor_data() -> None:
-    """GIVEN a joint that is known to have nothing but a spring and a motor, THEN the start-up is
-    near the bound of information; with the columns for what it may have, it takes longer."""
+    """GIVEN an estimator without columns for model errors, THEN the error of the start-up is near
+    the theoretical lower bound. With these columns, the error of the start-up may be larger."""
     (table1,) = (joint for joint in JOINTS if joint.scenario.name == "table1")
     unknown, nominal = compare([without_misfits(table1)], range(1, 21), processes=2)
     assert unknown.error(REGRESSION) <= 0.30
@@ -122,7 +122,7 @@ def test_printed_table(runs: list[list[Row]]) -> None:
 
 @pytest.mark.slow("two joints of the comparison, twice over two seeds")
 def test_command(shell: Shell, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Means over seeds do not depend on the number of processes, and the file has all digits."""
+    """The number of processes does not change means over seeds, and the file has all digits."""
     joints = [JOINTS[2], JOINTS[-1]]
     monkeypatch.setattr(conditions, "JOINTS", joints)
     out = Path("out").absolute()

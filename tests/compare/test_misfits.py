@@ -1,4 +1,4 @@
-"""The catalogue of misfits as data, samples of a run, the measure in closed form, the command."""
+"""Tests of `compare` with model errors: list of conditions, simulated samples, score, command."""
 
 import csv
 import math
@@ -28,7 +28,7 @@ BY_NAME = {each.name: each for each in CONDITIONS}
 
 
 def short(joint: Joint, name: str = "none", duration: float = 0.5) -> Experiment:
-    """The beginning of a condition, measured without rounding and noise."""
+    """The first part of an experiment, measured without quantisation and noise."""
     changed = BY_NAME[name].change(draw(joint, 1)).with_plant(EXACT)
     return replace(changed, duration=duration)
 
@@ -47,10 +47,10 @@ def test_the_torque_is_measured_late_or_early(late: float) -> None:
     experiment = replace(short(SEA_1K), torque=sines, late=late, rest=0.1)
     t = times(1e-3, 0.499)
     expected = sines(t - late - 0.1) * (t - late >= 0.1)
-    away = np.abs(t - late - 0.1) > 2e-3  # where the torque begins, it is linear for a sample
+    away = np.abs(t - late - 0.1) > 2e-3  # not at the start of the torque
     tau = motion.run(experiment).measured["tau"]
     assert len(tau) == 500
-    # Between samples it is linear, not a sine.
+    # The torque between two samples is interpolated linearly, which approximates the sine.
     np.testing.assert_allclose(tau[away], expected[away], rtol=0, atol=0.3 * (4e-3 * math.pi) ** 2)
 
 
@@ -113,15 +113,15 @@ def test_the_score_in_closed_form() -> None:
     sigma_std = np.array([1.0, 1.0, 20.0, 4.0, 1.0])
     confident = np.array([True, True, True, False, True])
     found = score(true, sigma, sigma_std, confident)
-    assert found.instants == 4  # the last one is in the dead zone
+    assert found.instants == 4  # without the last instant, whose stiffness is 0
     assert found.figures["error"] == pytest.approx(
         100 * math.sqrt((0.01**2 + 0.15**2 + 0.3**2 + 0.5**2) / 4)
     )
     assert found.figures["claim"] == pytest.approx(
         100 * math.sqrt((0.01**2 + 0.01**2 + 0.2**2 + 0.02**2) / 4)
     )
-    assert found.figures["coverage"] == 50  # the first and the third
-    # The second claims 1/115; the fourth 4 of an estimate of 100, which is more than 2 %.
+    assert found.figures["coverage"] == 50  # instants 1 and 3 of 4
+    # Only instant 2 is dangerous: it is wrong and its standard deviation is below 2 %.
     assert found.figures["dangerous"] == 25
     assert (found.figures["confident"], found.figures["wrong"]) == (75, 25)
 
@@ -138,7 +138,7 @@ def test_scores_add_up_over_instants() -> None:
 
 def test_a_gain_of_the_torque_is_an_error_of_its_size_that_the_prior_covers() -> None:
     (row,) = compare([BY_NAME["gain 0.9, prior 0.1"]], [AWAS], [1], processes=1)
-    factor = 1 / 0.9  # of the measured torque, and so of the stiffness
+    factor = 1 / 0.9  # error of the measured torque and of the stiffness
     figures = row.score.figures
     assert figures["error"] == pytest.approx(100 * (factor - 1), abs=0.5)
     assert figures["claim"] == pytest.approx(100 * 0.10 * factor, rel=0.1)
@@ -154,7 +154,7 @@ def test_the_estimator_is_given_a_prior_of_the_gain_where_there_is_an_error_of_i
 
 @pytest.mark.slow("120 joints of 20 s are simulated and estimated")
 def test_what_confident_means() -> None:
-    """The sentence of docs/filtered-regression.md, on joints that nobody has tuned on."""
+    """Tests what docs/filtered-regression.md promises for confident estimates, on random joints."""
     random = [each for each in CONDITIONS if each.group is Group.RANDOM]
     found = [row.score for row in compare(random, JOINTS, range(401, 441), processes=2)]
     assert found[JOINTS.index(AWAS)].figures["error"] <= 5.0
@@ -171,7 +171,7 @@ NAMES = ("none", "uneven Coulomb friction 20 %", "n = 1, too small")
 
 @pytest.fixture(scope="module")
 def rows() -> list[Row]:
-    """Seven rows: two conditions of all joints, and one of the AwAS."""
+    """Seven rows of the table: two conditions of all joints, and one condition of the AwAS."""
     return compare([BY_NAME[name] for name in NAMES], JOINTS, [1], processes=2)
 
 

@@ -1,4 +1,4 @@
-"""Folders that are written to: filled, or as they were. SHA-256 of files and folders."""
+"""An output folder is written completely or remains unchanged. Digests of files and folders."""
 
 import hashlib
 import shutil
@@ -35,7 +35,7 @@ def test_a_created_folder_that_stays_empty_is_removed(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
     with created_folder(folder):
         (folder / "result").write_text("")
-    with created_folder(tmp_path / "a"):  # it was there
+    with created_folder(tmp_path / "a"):  # the folder exists
         pass
     assert [p.name for p in folder.iterdir()] == ["result"]
 
@@ -61,10 +61,10 @@ def test_a_device_is_written_to(tmp_path: Path) -> None:
 
 
 def test_the_digest_of_a_folder(tmp_path: Path) -> None:
-    """That of the list of sha256sum. Any change of a file, or of its name, changes it."""
+    """The digest of a folder depends on the content and the name of each file, as in sha256sum."""
     bag = tmp_path / "bag"
     (bag / "more").mkdir(parents=True)
-    (bag / "metadata.yaml").write_bytes(bytes(range(256)) * 10_000)  # more than is read at a time
+    (bag / "metadata.yaml").write_bytes(bytes(range(256)) * 10_000)  # over one block
     (bag / "more" / "bag.db3").write_text("b")
     listed = run(need("sha256sum"), "metadata.yaml", "more/bag.db3", cwd=bag)
     found = sha256(bag)

@@ -1,4 +1,4 @@
-"""`sigmahat init`: a configuration guessed from names and values of columns."""
+"""`sigmahat init` derives a configuration from the names and values of the columns of a log."""
 
 from pathlib import Path
 from typing import Any
@@ -40,7 +40,7 @@ def test_steps_and_turns_of_encoders(shell: Shell) -> None:
 
 
 def test_what_it_asks_for_must_be_filled_in(shell: Shell) -> None:
-    counts = np.round(4e4 * MOTION)  # whole numbers are counts, and not radians
+    counts = np.round(4e4 * MOTION)  # integers are counts, not radians
     write_log({"t": T, "theta": counts, "q_deg": MOTION, "i_q": MOTION}, Path("log.csv"))
     shell.run("init log.csv")
     for key in ("theta.gear_ratio", "theta.counts_per_turn", "tau.torque_constant"):
@@ -72,14 +72,14 @@ def test_names_of_several_lines_stay_comments(shell: Shell) -> None:
 
 
 def test_no_column_that_looks_like_a_port(shell: Shell) -> None:
-    """A skeleton, with every column and its range."""
+    """GIVEN columns of unknown meaning, THEN the configuration lists each column with its range."""
     write_log({"x": np.arange(9.0) % 4, "note": np.array(list("abcdefghi"))}, Path("log.csv"))
     shell.run("init log.csv")
     text = Path("log.toml").read_text()
     assert "#   x: 9 samples, 0 to 3; a few values only" in text
     assert "#   note: 9 samples; text" in text
     assert set(read()["ports"]) == {"theta", "q", "tau"}
-    assert read()["parameters"]["setPoint"] == {"offset": 0, "scale": 1}  # not those of the AwAS
+    assert read()["parameters"]["setPoint"] == {"offset": 0, "scale": 1}  # unlike the AwAS
     assert "motor.gamma is 0; fill in the gear ratio" in shell.refused("estimate log.csv")
     text = text.replace("motor.gamma = 0", "motor.gamma = 9")
     Path("log.toml").write_text(text)
@@ -98,7 +98,7 @@ def test_a_set_point_of_two_settings_and_a_column_with_a_text(shell: Shell) -> N
 
 
 def two_joints(*names: str) -> None:
-    """A log of motor and link of a hip and of a knee; the names choose some of its columns."""
+    """Writes a log with motor and link of a hip and a knee. `names` selects some of the columns."""
     log = {"t": T}
     for joint, w in (("hip", 5), ("knee", 3)):
         log[f"{joint}_motor_pos_rad"] = np.sin(w * T)
@@ -150,7 +150,7 @@ def test_the_gear_ratio_of_theta_is_that_of_the_motor() -> None:
 def test_a_time_in_another_unit_is_doubted(
     step: float, unit: str | None, period: str, shell: Shell
 ) -> None:
-    """GIVEN times in ms or us under a name that says s, THEN init names the likely unit."""
+    """GIVEN times in ms or us whose name says seconds, THEN `init` names the probable unit."""
     motion = np.sin(np.arange(1000) / 100)
     columns = {"theta": motion, "q": 0.9 * motion, "tau": motion**2}
     write_log({"time_s": step * np.arange(1000), **columns}, Path("log.csv"))

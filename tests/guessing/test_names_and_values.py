@@ -1,4 +1,4 @@
-"""What names say, and what values say where names are silent."""
+"""Meaning and unit of a column follow from its name, or from its values if the name is unclear."""
 
 from pathlib import Path
 
@@ -77,7 +77,7 @@ KEPT = np.r_[0:3000, 4500:N]
         (EVEN[KEPT], T),
         ((EVEN + RNG.uniform(-0.3 * T, 0.3 * T, N))[KEPT], T),
         (EVEN[RNG.uniform(size=N) > 0.15], T),
-        (np.floor(1500 * EVEN) / 1000, 1.5 * T),  # a clock of 1 ms, rows 1.5 ms apart
+        (np.floor(1500 * EVEN) / 1000, 1.5 * T),  # a period of 1.5 ms, rounded to 1 ms
         (1.7e9 + EVEN, T),
     ],
     ids=["gap", "gap and jitter", "lost rows", "coarse clock", "since 1970"],
@@ -114,7 +114,7 @@ def test_a_velocity_tells_the_unit_of_its_position(m: Motion) -> None:
     }
     ports = only(columns).ports
     assert [ports[name].unit for name in ("theta", "q")] == ["turn", "turn"]
-    # The joint is soft: its motion gives the gear ratio only about, so it is asked for.
+    # The log of a soft joint shows only an approximate gear ratio, so the user must provide it.
     assert ports["theta"].gear_ratio is None
     assert ports["theta"].moves == pytest.approx(GEAR, rel=0.05)
     assert ports["tau"].sign == -1
@@ -129,8 +129,8 @@ def test_signs_and_zeros(m: Motion) -> None:
 
 
 def test_a_hand_on_the_link_leaves_the_sign_of_the_torque_open() -> None:
-    """GIVEN a motor that only holds its position, with springs of its controller, WHEN the link is
-    moved by hand THEN nobody is told a sign: the power of the torque has the other one there."""
+    """GIVEN a motor that holds its position by control, WHEN a hand moves the link, THEN `init`
+    derives no sign of the torque, because the motor torque has the opposite power in this case."""
     log = dict(log_by_hand(0.05))
     assert np.mean(log["current"] * np.gradient(log["motor_counts"])) < 0
     port = only(log).ports["tau"]

@@ -1,7 +1,7 @@
-"""`sigmahat init` on logs in many styles: from the log to the right stiffness with few edits.
+"""Tests of `sigmahat init` with logs in many formats: few edits lead to the right stiffness.
 
-The joints are simulated outside of the package. After `init`, values of the data sheet are filled
-in, and at most two other keys may be edited.
+The tests simulate the joints independently of the package. After `init`, they add values of the
+data sheet and edit at most two other keys of the configuration.
 """
 
 from collections.abc import Callable, Mapping
@@ -22,7 +22,7 @@ from sigmahat.logs.joints import set_item
 from sigmahat.logs.readers.formats import open_log
 
 ACCURACY = 0.04
-"""A few per cent: what the estimator reaches with these logs is another matter."""
+"""Relative tolerance of the stiffness; other tests check the accuracy of the estimator."""
 TURN, DEG = 2 * np.pi, 180 / np.pi
 Columns = dict[str, Any]
 
@@ -40,12 +40,12 @@ def current(m: Motion) -> Array:
 
 
 def other_joint(m: Motion, values: Array) -> Array:
-    """Another joint of the robot, which moves differently."""
+    """Values of another joint of the robot, which moves differently from the tested joint."""
     return 0.7 * np.interp(0.61 * m.t + 1.7, m.t, values)
 
 
 def knee(m: Motion) -> Columns:
-    """Counts that wrap, milliamperes, jitter, missing values, a gap."""
+    """A log with a wrapping counter, currents in mA, jitter, missing values and a gap."""
     rng, keep = np.random.default_rng(1), (m.t < 3.0) | (m.t > 3.3)
     link = counts(m.q, 2**17, 70_000).astype(float)
     link[rng.choice(len(link), 40, replace=False)] = np.nan
@@ -59,7 +59,7 @@ def knee(m: Motion) -> Columns:
 
 
 def plotjuggler(m: Motion) -> Columns:
-    """Two joints, position and effort of motor and link."""
+    """A log of two joints with position and effort of each motor and link."""
     columns: Columns = {"__time": 1_700_000_000.0 + m.t}
     for name, position, effort in (
         ("knee_motor", m.theta, noisy(m.tau, 2e-3)),
@@ -83,7 +83,7 @@ def german(m: Motion) -> Columns:
 
 
 def french(m: Motion) -> Columns:
-    """No units in the names; a lever in mm sets the stiffness."""
+    """A log whose French names contain no units; a lever arm in mm adjusts the stiffness."""
     return {
         "temps": m.t,
         "position_moteur": counts(m.theta, 5_000 * GEAR) * TURN / (5_000 * GEAR),
@@ -102,7 +102,7 @@ def nothing_but_numbers(m: Motion) -> Columns:
 
 
 def drive_objects(m: Motion) -> Columns:
-    """CiA 402: positions, and torque in thousandths of the rated 2 N.m."""
+    """A log of CiA 402 objects: positions, and torque in thousandths of the rated 2 N.m."""
     return {
         "Timestamp [ns]": 133_000_000_000_000_000 + np.round(m.t * 1e9).astype(np.int64),
         "Axis 1.Position actual value": counts(m.theta * GEAR, 2**20, -123_456),
@@ -114,7 +114,7 @@ def drive_objects(m: Motion) -> Columns:
 
 
 def firmware(m: Motion) -> Columns:
-    """Turns: neither names nor values say so, as radians they were as likely."""
+    """A log in turns, although names and values would equally fit radians."""
     return {
         "tickUs": np.round(1e6 * m.t).astype(np.int64) + 4_711,
         "axis0.encoder.posEstimate": m.theta * GEAR / TURN,
@@ -125,7 +125,7 @@ def firmware(m: Motion) -> Columns:
 
 
 def simulink(m: Motion) -> Columns:
-    """Signals, each with its times."""
+    """A log of Simulink, in which each signal has its own time vector."""
     signals = {"PhiMot": noisy(m.theta * GEAR, 2e-4), "PhiLast": noisy(m.q, 5e-6)}
     signals |= {"MMot": noisy(m.tau, 2e-3), "PhiMotSoll": m.target * GEAR}
     data = {f"logsout/{name}/Data": values for name, values in signals.items()}
@@ -134,13 +134,13 @@ def simulink(m: Motion) -> Columns:
 
 @dataclass(frozen=True)
 class Style:
-    """A way to log a joint."""
+    """A format of a log, and the configuration that `init` should find."""
 
-    file: str  # its suffix is the format
+    file: str  # the suffix selects the file format
     log: Callable[[Motion], Columns]
-    ports: Mapping[str, tuple[str, str | None]]  # column and unit of each port
-    sheet: Mapping[str, Any]  # keys that are filled in with values of the data sheet
-    edits: Mapping[str, Any] = field(default_factory=dict)  # keys that are edited beyond that
+    ports: Mapping[str, tuple[str, str | None]]  # expected column and unit of each port
+    sheet: Mapping[str, Any]  # keys to set to values of the data sheet
+    edits: Mapping[str, Any] = field(default_factory=dict)  # other keys to edit
     joint: str | None = None  # for --joint
 
 
@@ -201,7 +201,7 @@ STYLES = [
 
 
 def edited(text: str, values: Mapping[str, Any]) -> str:
-    """A configuration with values for dotted keys; [parameters] is left out of their names."""
+    """Sets keys of a configuration to new values. Keys of [parameters] are given without prefix."""
     document = tomlkit.parse(text)
     for key, value in values.items():
         place = key.split(".") if key.startswith("ports.") else ("parameters", key)

@@ -1,4 +1,4 @@
-"""`sigmahat identify`: powers of the deformation, for springs that are symmetric or not."""
+"""`sigmahat identify` selects powers of the deformation for symmetric and asymmetric springs."""
 
 from pathlib import Path
 
@@ -15,7 +15,7 @@ from sigmahat.logs.estimate import estimate
 from sigmahat.logs.log import LogInMemory
 
 COUNTS = 2**17
-STIFFER = 4.0  # the stiffness is half as large again at one end of the motion [1/rad]
+STIFFER = 4.0  # relative change of the stiffness with the deformation [1/rad]
 CONFIGURATION = configured(
     *(f"samplePeriod = {T}", f"motor.gamma = {GEAR}", "motor.B = 1e-4", "motor.D_theta = 1e-3"),
     *("prior.B = 1.0", "prior.D_theta = 1.0", "prior.torque_gain = 0.0", "rls.m = 1"),
@@ -33,9 +33,9 @@ def log_of(stiffer: float, seed: int) -> LogInMemory:
 
 
 def within(log: LogInMemory, path: Path, stiffer: float) -> tuple[Array, Array]:
-    """Error and standard deviation of the stiffness, over the true one, within the data.
+    """Relative error and standard deviation of the stiffness in the measured range.
 
-    With a configuration that `identify` has completed.
+    The function completes the configuration by `identify` before it estimates.
     """
     write(identify(log, read_configuration(path)), path)
     (branch,) = estimate(log, read_configuration(path)).curve.branches
@@ -57,7 +57,7 @@ def test_a_spring_that_is_softer_to_one_side(path: Path) -> None:
     error, std = within(log, path, STIFFER)
     assert np.mean(error <= 1.96 * std) >= 0.9
     assert np.max(error) < 0.05
-    # THEN the odd powers, which somebody has asked for, are kept and do not hold it
+    # WHEN the user asks for odd powers only, THEN the intervals often miss the true stiffness.
     path.write_text(CONFIGURATION + ODD)
     error, std = within(log, path, STIFFER)
     assert read_configuration(path).parameters["rls.symmetric"]
@@ -65,8 +65,8 @@ def test_a_spring_that_is_softer_to_one_side(path: Path) -> None:
 
 
 def test_a_linear_spring_hardly_loses(path: Path) -> None:
-    """GIVEN a joint that needs one power, THEN its band is at most a tenth wider than with the odd
-    ones alone."""
+    """GIVEN a linear spring, THEN all powers make the confidence band at most 10 % wider than odd
+    powers do."""
     widths = {}
     for name, text in (("all", CONFIGURATION), ("odd", CONFIGURATION + ODD)):
         path.write_text(text)
@@ -78,7 +78,7 @@ def test_a_linear_spring_hardly_loses(path: Path) -> None:
 
 @pytest.mark.parametrize(("stiffer", "is_named"), [(0.0, False), (STIFFER, True)])
 def test_check_names_an_asymmetric_spring(stiffer: float, is_named: bool) -> None:
-    # THEN it is no longer named once all powers are used
+    # THEN `check` does not name the spring any more once the polynomial uses all powers.
     for text, names in (("", is_named), ("rls.symmetric = false\n", False)):
         found = check(log_of(stiffer, 3), in_memory(CONFIGURATION + text)).findings
         named = [each for each in found if each.kind is Kind.ASYMMETRY]

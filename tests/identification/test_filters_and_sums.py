@@ -1,4 +1,4 @@
-"""What identify computes without rows of equations, and without scipy.signal, against both."""
+"""Filters of `identify` equal scipy.signal, and fits to sums equal fits to rows of equations."""
 
 from dataclasses import replace
 
@@ -30,7 +30,7 @@ def test_the_low_pass_is_that_of_scipy(frequency: float, h: float) -> None:
     found = low_pass(walk, frequency, h)
     assert found[inner] == pytest.approx(expected[inner], abs=1e-6)
     assert low_pass(walk[:, 0], frequency, h) == pytest.approx(found[:, 0], abs=1e-9)
-    line = np.arange(50, dtype=np.float64)  # passes up to both ends
+    line = np.arange(50, dtype=np.float64)  # a line passes the filter unchanged
     assert low_pass(line, frequency, h) == pytest.approx(line, abs=1e-9)
 
 
@@ -59,20 +59,20 @@ def piece(count: int, seed: int) -> Signals:
 def test_a_fit_to_sums_is_a_fit_to_rows() -> None:
     pieces = [piece(9001, 1), piece(4400, 2)]
     found = fit(equations(pieces, T, GAMMA, FORM))
-    # GIVEN all equations, row by row
+    # GIVEN all rows of the equations, instead of their sums
     every = [each for p in pieces for each in rows(p, T, GAMMA, FORM, units(pieces))]
     y, X, Z = (
         np.concatenate([np.concatenate(part) for part in parts])
         for parts in ([e.y for e in every], [e.X for e in every], [e.Z for e in every])
     )
     p = np.linalg.solve(Z.T @ X, Z.T @ y)
-    # THEN both are equal as far as the rounding of the sums Z'X allows
+    # THEN both fits are equal, except for the rounding error of the sums Z'X.
     scale = np.sqrt(np.mean(X**2, axis=0))
     rounding = 100 * np.finfo(np.float64).eps * np.linalg.cond((Z / scale).T @ (X / scale))
     assert rounding < 1e-5
     assert list(found.value.values()) == pytest.approx(p.tolist(), rel=rounding)
     assert found.squares.sum() == pytest.approx(np.sum((y - X @ p) ** 2), rel=1e-6)
-    # AND the covariance is that of the sums of Z times error over a quarter of a second
+    # AND the covariance follows from sums of Z times error over blocks of a quarter of a second.
     scores = []
     for each in every:
         errors = each.Z * (each.y - each.X @ p)[..., None]
@@ -95,14 +95,14 @@ def test_a_known_coefficient_and_parts_that_are_left_out() -> None:
     assert fit(system).squares.sum() / system.rows.sum() < left_out(eighths).mean()
 
 
-# ---- a motor that moves less than a count per sample: rounding is not independent ----------------
+# ---- a slow motor, whose rounding errors are not independent from sample to sample ---------------
 
 
 GEAR, K, COUNT, B, D_THETA = 160.0, 2400.0, 2 * np.pi / 16384, 1.3e-4, 6e-4
 
 
 def recording(seed: int, noise: float) -> Signals:
-    """40 s of a joint with a linear spring; noise of the torque [N.m]."""
+    """Simulates 40 s of a joint with a linear spring and noise of the torque [N.m]."""
     rng, t = np.random.default_rng(seed), T * np.arange(40_000)
     w, amplitude = 2 * np.pi * np.array([0.35, 0.8, 1.7]), np.array([0.025, 0.015, 0.0075])
     angle = np.outer(t, w) + rng.uniform(0, 2 * np.pi, 3)
@@ -116,8 +116,8 @@ def recording(seed: int, noise: float) -> Signals:
 
 @pytest.mark.parametrize(("f_0", "noise"), [(20.0, 0.02), (100.0, 0.19)])
 def test_the_interval_of_the_inertia_holds_it(f_0: float, noise: float) -> None:
-    """GIVEN 0.3 counts per sample, THEN samples two counts apart give an interval that holds B. All
-    samples give less than B, with a small interval."""
+    """GIVEN a motion of 0.3 counts per sample, THEN a fit to samples that are two counts apart has
+    an interval that contains B. A fit to all samples underestimates B with a small interval."""
     held = {1: 0, 5: 0}
     for seed in range(12):
         piece = recording(seed, noise)
@@ -138,11 +138,11 @@ def test_a_motor_that_moves_fast_or_rests_keeps_all_samples() -> None:
 
 
 def test_a_torque_that_is_held_acts_half_a_sample_later() -> None:
-    """The fit is that of the torque at the samples, also if it takes each twentieth of them."""
+    """A fit with a held torque equals a fit with the sampled torque, even to every 20th sample."""
     t = T * np.arange(40001)
     theta, phi = np.sin(5 * t) + 0.3 * np.sin(13 * t), 0.02 * np.sin(7 * t + 1)
     torque = np.cos(5 * t) - 2 * np.sin(13 * t) - 0.3 * phi
-    held = (torque[:-1] + torque[1:]) / 2  # mean from each sample to the next one
+    held = (torque[:-1] + torque[1:]) / 2  # mean torque between two samples
     at_samples = Signals(theta[:-1], phi[:-1], np.ones(40000), torque[:-1], None)
     recorded = replace(at_samples, tau=held, held=True)
     for apart in (1, 20):

@@ -1,4 +1,4 @@
-"""`sigmahat identify`: the motor of the AwAS plant, from logs with encoders, noise and friction."""
+"""`sigmahat identify` finds the motor data of the AwAS from logs with encoders and noise."""
 
 import math
 import re
@@ -38,12 +38,12 @@ from sigmahat.logs.log import Array, LogInMemory
 from sigmahat.logs.units import convert
 
 Found = dict[float, Identified]
-AMPLITUDES = {0.1: 0.3, 0.3: 0.3, 1.0: 0.3, 3.0: 0.3, 8.0: 0.5}  # [Hz]: [N.m]
+AMPLITUDES = {0.1: 0.3, 0.3: 0.3, 1.0: 0.3, 3.0: 0.3, 8.0: 0.5}  # frequency [Hz]: [N.m]
 
 
 @pytest.fixture(scope="module")
 def found() -> Found:
-    """By frequency, from start values that are wrong by 20 %."""
+    """Results of `identify` by frequency, with start values that are wrong by 20 %."""
     return {f: identified(awas_log(f, A)) for f, A in AMPLITUDES.items()}
 
 
@@ -53,7 +53,7 @@ def identified(log: Mapping[str, Array], configuration: str = CONFIGURATION) -> 
 
 @pytest.fixture
 def path(tmp_path: Path) -> Path:
-    """Of a configuration."""
+    """Path of a file with a configuration."""
     path = tmp_path / "log.toml"
     path.write_text(CONFIGURATION)
     return path
@@ -64,7 +64,7 @@ def test_the_motor_and_the_noise_are_found(found: Found) -> None:
     for f in AMPLITUDES:
         for name, true in TRUE.items():
             quantity = found[f].quantities[name]
-            is_shown = (name, f) != ("B", 0.1)  # there B moves 1 % of the torque: no number
+            is_shown = (name, f) != ("B", 0.1)  # at 0.1 Hz, B is not shown
             assert quantity.determined is is_shown or (name, f) == ("B", 0.3)  # within 10.6 %
             assert quantity.value == pytest.approx(true, rel=0.05) or not is_shown
     for f in (1.0, 3.0, 8.0):
@@ -76,7 +76,7 @@ def test_the_motor_and_the_noise_are_found(found: Found) -> None:
 
 @pytest.mark.slow("eight logs of 8 s, each simulated and identified")
 def test_intervals_cover_the_truth() -> None:
-    # GIVEN other noise THEN 95 % hold the true value: of 24, more than 3 miss it once in 30 times
+    # If an interval covers the true value in 95 % of all cases, P(more than 3 of 24 miss it) = 3 %.
     misses = [
         (f, seed, name)
         for f in (0.3, 3.0)
@@ -113,13 +113,13 @@ def test_command_writes_what_is_determined_and_keeps_the_comments(shell: Shell) 
     text = Path("log.toml").read_text()
     document = tomlkit.parse(text).unwrap()
     motor = document["parameters"]["motor"]
-    assert motor["B"] == 1.84e-5  # not determined, not written
+    assert motor["B"] == 1.84e-5  # an undetermined B is not written
     assert motor["D_theta"] == pytest.approx(1e-3, rel=0.05)
     assert document["identified"]["B"]["value"] == "cannot tell"
-    assert document["parameters"]["prior"]["B"] == 1.0  # the start value 0 would be exact
+    assert document["parameters"]["prior"]["B"] == 1.0  # the default of 0 would mean an exact B
     for comment in ("# a comment of mine", "# on the axis of the motor", "# 20 % less than it is"):
         assert comment in text
-    # THEN the file is one that estimate reads
+    # THEN `estimate` can read the written configuration file.
     shell.run("estimate log.csv")
 
 
@@ -138,7 +138,7 @@ def test_values_are_written_where_they_stand(parameters: str, found: Found, path
     read = read_configuration(path).parameters
     assert set(written) == {f"parameters.{name}" for name in read}
     with Fmu(sigmahat.fmu("StiffnessEstimator")) as fmu:
-        fmu.parameters(read)  # they are the FMU's, and in range
+        fmu.parameters(read)  # the FMU accepts all parameters
     for name, key in (("B", "motor.B"), ("D_theta", "motor.D_theta")):
         assert read[key] == pytest.approx(TRUE[name], rel=0.05)
     assert read["prior.tau_coulomb"] == pytest.approx(TRUE["tau_coulomb"], rel=0.05)
@@ -147,8 +147,8 @@ def test_values_are_written_where_they_stand(parameters: str, found: Found, path
 
 
 def cannot_tell(found: Identified) -> Identified:
-    """The same, but without any motor data; the interval of tau_coulomb is known. Nobody has set B:
-    it is the start value of the FMU."""
+    """Returns the result without motor data, except for an interval of tau_coulomb. The user has
+    not set B, so the default value of the FMU applies."""
     unknown = {name: replace(q, determined=False) for name, q in found.quantities.items()}
     unknown["B"] = replace(unknown["B"], value=math.nan, half_width=math.inf)
     unknown["tau_coulomb"] = Quantity(0.01, 0.05, "N.m", determined=False)
@@ -169,13 +169,13 @@ def test_what_is_not_determined_is_never_exact(
     parameters: str, kept: dict[str, float], found: Found, path: Path
 ) -> None:
     path.write_text(f'[ports.q]\ncolumn = "q"\n{parameters}\n')
-    for _ in range(2):  # a second run finds what the first one wrote
+    for _ in range(2):  # the second run reads the file of the first run
         written = write(cannot_tell(found[1.0]), path)
         read = read_configuration(path).parameters
         wide = {"prior.B": 1000.0, "prior.D_theta": 1.0, "prior.tau_coulomb": 0.06, **kept}
         assert {name: read[name] for name in wide} == wide
         assert not any(f"parameters.{name}" in written for name in kept)
-        # No value of another robot stays without a word: B has no interval, D_theta has one.
+        # A comment marks the default values of B, without interval, and D_theta, with interval.
         friction = found[1.0].quantities["D_theta"]
         assert read["motor.B"] == pytest.approx(2.3e-5)
         assert read["motor.D_theta"] == pytest.approx(friction.value, rel=1e-5)
@@ -184,14 +184,14 @@ def test_what_is_not_determined_is_never_exact(
             lines = [x for x in path.read_text().splitlines() if "# not known: " in x]
             assert len(lines) == 2
         assert ("# mine" in path.read_text()) == ("# mine" in parameters)
-    # WHEN another log determines them THEN nothing of this is left
+    # WHEN another log determines the motor data, THEN all marks of unknown values disappear.
     write(found[1.0], path)
     read = read_configuration(path).parameters
     inertia = found[1.0].quantities["B"]
     assert inertia.half_width / inertia.value < 0.15
-    assert read["prior.B"] == 0.15  # the interval contains only chance
+    assert read["prior.B"] == 0.15  # the interval only covers random errors
     assert read["prior.tau_coulomb"] == pytest.approx(TRUE["tau_coulomb"], rel=0.05)
-    if "{" not in parameters:  # there is no place for a comment inside of braces
+    if "{" not in parameters:  # an inline table cannot contain a comment
         assert read.get("prior.D_theta") == kept.get("prior.D_theta")
         assert "cannot tell" not in path.read_text()
         assert "not known" not in path.read_text()
@@ -219,14 +219,14 @@ def test_a_log_at_one_set_point_keeps_the_order_that_others_need(found: Found, p
     write(at_one, path)
     read = read_configuration(path).parameters
     assert {name: read[name] for name in given} == given
-    # WHEN nobody has given an order, it is 1
+    # WHEN the user has not set the order rls.m, THEN `identify` writes 1.
     path.write_text(CONFIGURATION)
     write(at_one, path)
     assert read_configuration(path).parameters["rls.m"] == 1
 
 
 def test_a_motor_that_is_off_shows_nothing_of_itself() -> None:
-    """GIVEN a link that a hand moves while the motor has no torque, THEN no 0 is written for it."""
+    """GIVEN a link moved by hand and a motor without torque, THEN no motor data are determined."""
     found, with_torque = (identified(log_by_hand(hold), RIGHT) for hold in (0.0, 0.05))
     assert not any(each.determined for each in found.quantities.values())
     assert "only noise" in found.notes[-1]
@@ -235,7 +235,7 @@ def test_a_motor_that_is_off_shows_nothing_of_itself() -> None:
 
 
 def test_torque_constant(shell: Shell) -> None:
-    # GIVEN a current, a torque constant wrong by 20 %, and a sensor
+    # GIVEN a motor current, a torque constant that is wrong by 20 %, and a torque sensor
     log = awas_log(1.0, 0.3)
     write_log({**log, "tau": log["tau"] / 0.05}, Path("log.parquet"))
     text = f'ports.tau_e_sensor.column = "tau_e_sensor"\n{CONFIGURATION}'
@@ -249,8 +249,8 @@ def test_torque_constant(shell: Shell) -> None:
 
 
 def test_a_value_instead_of_one_that_is_not_known_stays(found: Found, path: Path) -> None:
-    # GIVEN a file in which identify marked B WHEN somebody changes value and prior, but not the
-    # comments, THEN the next run keeps both
+    # GIVEN a file in which `identify` has marked B as not known
+    # WHEN a user changes B and prior.B but no comments, THEN the next run keeps both values.
     path.write_text('[ports.q]\ncolumn = "q"\n')
     write(cannot_tell(found[1.0]), path)
     text = path.read_text()
@@ -263,19 +263,19 @@ def test_a_value_instead_of_one_that_is_not_known_stays(found: Found, path: Path
 
 
 def test_a_torque_of_another_scale_does_not_replace_a_known_inertia() -> None:
-    """GIVEN a torque that is 100 times too small, and motor.B known to 10 %."""
+    """GIVEN a torque that is too small by a factor of 100, and a motor.B with an error of 10 %."""
     log = knee_log()
     wrong = RIGHT.replace("torque_constant", "gear_ratio = 100\ntorque_constant")
     found = identified(log, wrong)
     assert not found.quantities["B"].determined
     assert "motor.B is 0.000105, known to 10 %: it is not written" in "".join(found.notes)
-    # WHEN nobody says how well it is known, or the torque is right, it is written
+    # WHEN prior.B allows any value of B, or the torque is right, THEN B is determined.
     for text in (wrong.replace("prior.B = 0.1", "prior.B = 1000"), RIGHT):
         assert identified(log, text).quantities["B"].determined
 
 
 def free_load(frequencies: Sequence[float]) -> Columns:
-    """A free inertia of 0.6 kg.m2 behind 7000 N.m/rad and a gear of 50, in the steady state."""
+    """Simulates a free load of 0.6 kg.m2 on a spring of 7000 N.m/rad with a gear ratio of 50."""
     M, K, gear, B, D = 0.6, 7000.0, 50.0, 8e-5, 6e-4
     t = np.arange(0.0, 20.0, 0.002)
     theta, q, tau = np.zeros((3, len(t)))
@@ -307,7 +307,7 @@ def test_one_sine_of_a_free_load_does_not_tell_its_inertia_from_the_motors(
 @pytest.mark.parametrize("factor", [1.0, 2.0])
 def test_a_stiffness_that_changes_in_the_log_does_not_look_like_inertia(factor: float) -> None:
     def stiffness(t: Array) -> Array:
-        """Constant in spite of the lever arm of the joint, and then changed."""
+        """Factor that makes the stiffness constant in spite of the lever arm, until it changes."""
         steady: Array = (0.07 / (0.07 + 0.02 * np.sin(0.9 * t))) ** 2
         return steady * np.where(t < 12.0, 1.0, factor)
 
@@ -332,13 +332,13 @@ def test_the_zero_is_where_the_spring_has_no_torque(path: Path) -> None:
     assert "ports.q.zero" in write(found, path)
     q = convert("q", read_configuration(path).ports["q"], log["q"])
     assert np.max(np.abs(q - true)) <= zero.half_width
-    # THEN a second run leaves it
+    # THEN a second run does not change the zero.
     again = identified(log, path.read_text())
     assert again.zero == 0 and "ports.q.zero" not in write(again, path)
 
 
 def motor(noise_of_phi: float, noise: float = 3e-3) -> Signals:
-    """A spring of 300 N.m/rad on a motor that follows two sines, and noise above 3 Hz in phi."""
+    """Simulates a motor with a spring of 300 N.m/rad, a torque with noise, and a noisy phi."""
     rng = np.random.default_rng(1)
     t = T * np.arange(20000)
     theta = np.sin(2 * np.pi * 0.7 * t)
@@ -370,14 +370,14 @@ def log_of(joint: Signals) -> Columns:
 
 def test_with_a_wrong_sign_the_zero_stays(path: Path) -> None:
     log = awas_log(1.0, 0.3, 8.0)
-    log = {**log, "q": 2 * log["theta"] - log["q"] + 15e-3}  # phi with the other sign
+    log = {**log, "q": 2 * log["theta"] - log["q"] + 15e-3}  # phi with the wrong sign
     found = identified(log)
     assert not found.quantities["zero"].determined
     assert "ports.q.zero" not in write(found, path)
 
 
 def test_the_prior_holds_what_encoders_read_at_different_times_show(path: Path) -> None:
-    # GIVEN a link encoder read 20 ms late: k times -20 ms times the velocity looks like friction
+    # GIVEN a link encoder with a delay of 20 ms, which causes an error that resembles friction
     late, log = 20, log_of(motor(0.0))
     q = log["q"]
     found = identified({**log, "q": np.concatenate([q[:late], q[:-late]])})
@@ -401,7 +401,7 @@ def test_a_noisy_deformation_limits_the_bandwidth(noise_of_phi: float, is_noise:
 
 
 def test_a_torque_that_is_late_does_not_look_like_friction() -> None:
-    # GIVEN a torque that acts 2 ms after it is recorded, and a spring that looks like friction then
+    # GIVEN a torque that acts 2 ms after its sample, so that the spring resembles friction
     late, log = 2, log_of(motor(1e-7))
     found = identified({**log, "tau": np.roll(log["tau"], -late)})
     for name, true in (("B", 2e-5), ("D_theta", 1e-3)):

@@ -1,4 +1,4 @@
-"""The places at which the slope of a spring changes at once, from motions in closed form."""
+"""Tests of the knees of a spring, which are deformations where its stiffness changes abruptly."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -13,23 +13,23 @@ from sigmahat.identification.spring import knees
 
 T, GAMMA, K = 1e-3, 50.0, 400.0
 FORM = Form(20.0, 50.0, n=4, symmetric=False)
-LARGEST, ZERO = 0.03, 0.004  # of the deformation [rad], of its zero
+LARGEST, ZERO = 0.03, 0.004  # largest deformation and offset of the deformation [rad]
 
 
 Spring = Callable[[Array], Array]
 FOUND = 0.03 * LARGEST
-"""How near a place has to be [rad]."""
+"""Tolerance for the position of a knee [rad]."""
 
 
 def knee(*places: float, ratio: float = 2.0) -> Spring:
-    """A spring whose slope K changes at these deformations by ratio - 1 times K."""
+    """A spring whose stiffness K increases by (ratio - 1) K at each of the given deformations."""
     return lambda phi: K * (phi + (ratio - 1) * sum(phi - np.clip(phi, -k, k) for k in places))
 
 
 def piece(spring: Spring, blow: float = 0.0) -> Signals:
-    """Equation (3) without inertia, solved for the torque, with noise of 1 % of it.
+    """Signals that satisfy equation (3) without inertia; the torque has noise of 1 %.
 
-    blow  deformation for a moment at the begin, beside that of the motion [rad]
+    blow  additional deformation for a short time at the start, as after a blow [rad]
     """
     t = T * np.arange(20_000)
     theta = 0.3 * np.sin(2.1 * t) + 0.2 * np.sin(5.3 * t)
@@ -46,14 +46,14 @@ def piece(spring: Spring, blow: float = 0.0) -> Signals:
     [*(((k,), ratio) for k in (0.2, 0.43, 0.7) for ratio in (1.5, 0.5)), ((0.25, 0.6), 1.5)],
 )
 def test_the_knees_of_a_spring_are_found(shares: Sequence[float], ratio: float) -> None:
-    """Two of them as in harmonic drives: the slopes K_1, K_2, K_3 of their catalogues."""
+    """A harmonic drive has two knees between the stiffnesses K_1, K_2 and K_3 of its data sheet."""
     places = [share * LARGEST for share in shares]
     found = knees([piece(knee(*places, ratio=ratio))], T, GAMMA, FORM, ZERO)
     assert found == pytest.approx(places, abs=FOUND)
 
 
 def test_a_torque_sensor_does_not_hide_the_knee() -> None:
-    """GIVEN a sensor, whose torque takes the place of the polynomial where K_t is identified."""
+    """GIVEN a torque sensor, whose torque replaces the polynomial when K_t is identified."""
     spring = knee(0.4 * LARGEST)
     plain = piece(spring)
     measured = replace(plain, tau_e=spring(plain.phi - ZERO))
@@ -73,5 +73,5 @@ def test_a_blow_moves_neither_the_knee_nor_the_scale_of_the_torque() -> None:
 
 @pytest.mark.parametrize("spring", [knee(), lambda phi: K * (phi + 0.5 * phi**3 / LARGEST**2)])
 def test_a_spring_without_a_knee_has_none(spring: Spring) -> None:
-    """GIVEN a torque that the polynomial of the estimator can make."""
+    """GIVEN a spring whose torque is a polynomial that the estimator can represent."""
     assert knees([piece(spring)], T, GAMMA, FORM, ZERO) == ()

@@ -1,4 +1,4 @@
-"""The answer as a curve: it holds the truth as often as it says, and only where the data reach."""
+"""Tests of the estimated curve of torque and stiffness: its confidence band and its range."""
 
 import csv
 import json
@@ -45,7 +45,7 @@ from sigmahat.logs.panels import curve_panels
 from sigmahat.logs.readers.formats import open_log
 
 GAIN = 0.02
-"""Standard deviation of the gain of the torque: start value of prior.torque_gain."""
+"""Standard deviation of the gain of the torque, the default of prior.torque_gain."""
 CLOSED_FORM = configured(
     *("motor.B = 2.3e-5", "motor.D_theta = 1e-3", "motor.gamma = 50", "samplePeriod = 0.001"),
     *("prior.B = 0.05", "prior.tau_coulomb = 0.02", "prior.tau_e = 20", "noise.tau = 1e-3"),
@@ -62,14 +62,14 @@ def estimated(columns: Columns, configuration: str, folder: Path) -> Estimate:
 
 
 def good_log(joint: MisfitJoint, gain: float = 1.0) -> Columns:
-    """A log with good sensors, but for the gain of the torque."""
+    """A log with accurate sensors, except for the gain of the torque."""
     log = recorded(replace(joint, counts=1 << 18, noise=1e-3))
     return {**log, "tau": gain * log["tau"]}
 
 
 @pytest.mark.slow("twenty logs are estimated")
 def test_the_bands_hold_the_truth_as_often_as_they_say() -> None:
-    """Each log has its own noise, and a gain of the torque as likely as the configuration says."""
+    """GIVEN logs with random noise, and random torque gains that match prior.torque_gain."""
     gains = 1 + GAIN * np.random.default_rng(2).normal(size=20)
     configuration = in_memory(CLOSED_FORM)
     inside: dict[str, list[float]] = {"tau_e": [], "sigma": []}
@@ -88,11 +88,11 @@ def test_the_bands_hold_the_truth_as_often_as_they_say() -> None:
             assert branch.sigma_std is not None
             z = (branch.sigma - stiffness) / branch.sigma_std
             scores.append(float(np.mean(z[branch.within] ** 2)))
-    # The gain is one number of a log: of 20 such numbers 19 are to be expected within 1.96, and
-    # fewer than 16 with a probability of 0.3 %. The band of the torque may be wider, not narrower.
+    # Of 20 logs, 19 should have a torque gain within 1.96 standard deviations.
+    # The probability that fewer than 16 torque gains are within this limit is only 0.3 %.
     assert np.mean(inside["sigma"]) >= 0.8
     assert np.mean(inside["tau_e"]) >= 0.8
-    # Errors, over what the band says, are as large as the gains that were drawn, and little larger.
+    # The normalised errors of the stiffness are hardly larger than the normalised torque gains.
     assert 0.8 < np.mean(scores) / np.mean(((gains - 1) / GAIN) ** 2) < 1.5
 
 
@@ -106,7 +106,7 @@ def awas(tmp_path_factory: pytest.TempPathFactory) -> Awas:
 
 
 def test_the_band_is_what_the_estimator_said_at_its_last_sample(awas: Awas) -> None:
-    """The set-point of the last sample is that of a branch: there both are the same."""
+    """The curve has a branch at the last set-point, which equals the last output of the FMU."""
     result, _, folder = awas
     end = json.loads((folder / "joint.json").read_text())["at_the_end"]
     branch = min(result.curve.branches, key=lambda b: abs(b.set_point - end["set_point"]))
@@ -127,7 +127,7 @@ def test_torque_is_the_integral_of_the_stiffness(awas: Awas) -> None:
 
 
 def test_measured_points_lie_about_the_curve(awas: Awas) -> None:
-    """(29): tau_e = k_s r^2 sin(2 phi) is what a perfect sensor would have measured."""
+    """GIVEN the true torque tau_e = k_s r^2 sin(2 phi) of equation (29)."""
     _, _, folder = awas
     found = read_points(folder / POINTS)
     assert 1000 < len(found.phi) <= 3001
@@ -155,7 +155,7 @@ def test_the_words_say_the_same(awas: Awas) -> None:
     assert formula
     program = re.sub(r"(?<=[\d)]) (?=[a-z(])", " * ", formula[1]).replace("^", "**")
     for branch in curve.branches:
-        value = eval(program, {"phi": branch.phi, "s": branch.set_point})  # our own words
+        value = eval(program, {"phi": branch.phi, "s": branch.set_point})  # the text is safe
         np.testing.assert_allclose(value, branch.tau_e, rtol=1e-3, atol=1e-3)
     lines = curve_text(curve)
     assert "for phi from" in lines[0]
@@ -167,7 +167,7 @@ def test_the_words_say_the_same(awas: Awas) -> None:
 
 
 def test_a_fixed_spring_with_an_offset_has_one_curve(tmp_path: Path) -> None:
-    """A general polynomial: no motor torque tells its constant from a bias, as the band says."""
+    """The band of a general polynomial is wide, because its constant resembles a torque bias."""
     general = CLOSED_FORM.replace("rls.m = 2", "rls.m = 1\nrls.symmetric = false")
     general = general.replace("rls.n = 2", "rls.n = 3")
     result = estimated(good_log(MisfitJoint()), general, tmp_path)
@@ -249,7 +249,7 @@ def test_a_band_that_is_wide_leaves_the_curve_visible() -> None:
     ]
 
 
-# ---- a curve with knees, as the nearest polynomial -----------------------------------------------
+# ---- a polynomial that approximates a curve with knees -------------------------------------------
 
 
 OF_KNEE = Polynomial(
@@ -269,13 +269,13 @@ def test_a_polynomial_without_knees_stays_as_it_is() -> None:
     assert with_knees(OF_KNEE, ANGLES, SETTINGS, TORQUE, SLOPE) is OF_KNEE
 
 
-@pytest.mark.parametrize("low", [0, 50])  # from -0.2 rad on, and without 0 rad
+@pytest.mark.parametrize("low", [0, 50])  # with and without a deformation of 0 rad
 def test_more_powers_come_near_a_knee(low: int) -> None:
     x, s = ANGLES[low:], SETTINGS[low:]
     beyond, knee = 30 * np.maximum(x - 0.1, 0), np.where(x > 0.1, 30.0, 0.0)
     found = with_knees(OF_KNEE, x, s, TORQUE[low:] + beyond, SLOPE[low:] + knee)
     torque, slope = found.at(x, s)
-    # The best polynomials for the torque alone, and for the stiffness alone, by another function
+    # As references, numpy fits polynomials to the torque alone and to the stiffness alone.
     errors = torque - TORQUE[low:] - beyond, slope - SLOPE[low:] - knee
     for error, wanted, degree in zip(errors, (beyond, knee), (7, 6), strict=True):
         best = np.polynomial.Polynomial.fit(x, wanted, degree)(x)
@@ -285,8 +285,8 @@ def test_more_powers_come_near_a_knee(low: int) -> None:
 
 
 def test_the_estimator_has_columns_for_the_powers_near_a_knee() -> None:
-    """GIVEN the powers of the set-point that identify writes, the one more that the estimator may
-    use, and two knees."""
+    """GIVEN two knees, and one power of the set-point more than `identify` writes, THEN the
+    estimator accepts these parameters."""
     many = replace(OF_KNEE, powers_of_set_point=[0, 1, 2, 3, 4], eta=[[1.0] * 5] * 4)
     torque, slope = many.at(ANGLES, SETTINGS)
     start = start_of(with_knees(many, ANGLES, SETTINGS, torque, slope + (ANGLES > 0.1)))

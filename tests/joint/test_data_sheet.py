@@ -1,4 +1,4 @@
-"""The data sheet of a joint, what is made of it for other tools, and the way back into the FMU."""
+"""Tests of the data sheet of a joint, of its export for other tools, and of its use in the FMU."""
 
 import ast
 import json
@@ -51,7 +51,7 @@ def original(every: dict[str, Path]) -> Path:
 
 @pytest.fixture
 def knee(original: Path, shell: Shell) -> Shell:
-    """Commands in a folder with the log and its results."""
+    """A shell in a folder with a log and its results."""
     shutil.copytree(original, Path(), dirs_exist_ok=True)
     return shell
 
@@ -67,7 +67,7 @@ def export(folder: Path, kind: str, out: Path) -> Path:
     return path
 
 
-# ---- what it says -------------------------------------------------------------------------------
+# ---- contents of the data sheet -----------------------------------------------------------------
 
 
 def test_what_it_rests_on(original: Path) -> None:
@@ -106,7 +106,7 @@ def test_the_stiffness_is_that_of_the_table(original: Path) -> None:
 
 
 def test_the_polynomial_is_the_curve(case: Path) -> None:
-    """The curve is from the FMU, at its last state; the polynomial is evaluated here."""
+    """The curve from the last state of the FMU equals the polynomial, evaluated by numpy."""
     sheet = sheet_of(case)
     p, curve = sheet["polynomial"], sheet["curve"]
     eta, powers = np.array(p["eta"]), np.array(p["powers_of_phi"])
@@ -119,8 +119,8 @@ def test_the_polynomial_is_the_curve(case: Path) -> None:
 
 
 def test_intervals_of_the_parameters(tmp_path: Path) -> None:
-    """Of `identify` where it wrote one, else of the prior; none where a value is exact. Each
-    contains its value."""
+    """An interval comes from `identify`, or else from the prior; an exact value has no interval.
+    Each interval contains the value of its parameter."""
     identified = (
         '[identified]\nB = {value = 2.3e-5, half_width = 1e-6, unit = "kg.m2"}\n'
         'D_theta = {value = "cannot tell", half_width = 1e-4, unit = "N.m.s/rad"}\n'
@@ -144,7 +144,7 @@ def test_intervals_of_the_parameters(tmp_path: Path) -> None:
 
 
 def for_fmpy(start: Values) -> Values:
-    """FMPy takes the number of an item of an enumeration, and not its name."""
+    """Replaces names of enumeration items by numbers, because FMPy only accepts the numbers."""
     variables = fmpy.read_model_description(sigmahat.fmu("StiffnessEstimator")).modelVariables
     kinds = {v.name: v.declaredType for v in variables if v.type == "Enumeration"}
     items = {n: {item.name: int(item.value) for item in t.items} for n, t in kinds.items()}
@@ -159,9 +159,9 @@ def from_ssv(path: Path) -> Values:
 
 
 def test_the_fmu_begins_with_what_was_learned_to_the_last_bit(case: Path, tmp_path: Path) -> None:
-    """Data sheet to SSV to FMU: the curve is the one that the estimator had at the end.
+    """An SSV file from the data sheet sets the FMU to the last estimated curve.
 
-    Before any sample the FMU evaluates it at phi = 0 and theta_c = 0.
+    Before the first sample, the FMU evaluates the curve at phi = 0 and theta_c = 0.
     """
     sheet = sheet_of(case)
     start = from_ssv(export(case, "ssv", tmp_path))
@@ -171,7 +171,7 @@ def test_the_fmu_begins_with_what_was_learned_to_the_last_bit(case: Path, tmp_pa
     eta = np.array(sheet["polynomial"]["eta"])
     for (i, j), coefficient in np.ndenumerate(eta):
         assert outputs[f"eta[{i},{j}]"] == coefficient
-    # THEN the stiffness is that of the sheet, and the closed form, both to the last bit
+    # THEN the stiffness equals the data sheet and the closed form, both exactly.
     row = eta[sheet["polynomial"]["powers_of_phi"].index(1)]
     sigma = 0.0
     for coefficient in row[::-1]:
@@ -187,7 +187,7 @@ Read = Callable[[Path], Values]
 
 
 def from_matlab(path: Path) -> Values:
-    """The variables that each line of a MATLAB function sets."""
+    """Returns the variables that the lines of a MATLAB function set."""
     lines = path.read_text().splitlines()
     assert lines[0] == f"function p = {path.stem}" and lines[-1] == "end"
     found: Values = {}
@@ -199,7 +199,7 @@ def from_matlab(path: Path) -> Values:
 
 
 def from_modelica(path: Path) -> Values:
-    """Of a Modelica record, as a compiler reads it; but it does not say what a matrix holds."""
+    """Returns the values of a Modelica record as a compiler reads them, without its matrices."""
     text = path.read_text()
     model = rumoca.Session().loads(f"{text}model M {path.stem} own; end M;", model="M")
     values = {name: model.parameters[name] for name in model.parameters.names}
@@ -230,7 +230,7 @@ def test_a_file_has_every_start_value_to_the_last_bit(
 
 
 def test_the_ssv_has_every_start_value_that_importers_agree_on(case: Path, tmp_path: Path) -> None:
-    """Booleans and enumerations are in it where the FMU has another value itself."""
+    """The SSV file contains Booleans and enumerations that differ from the defaults of the FMU."""
     path = export(case, "ssv", tmp_path)
     found, expected = from_ssv(path), sheet_of(case)["start_values"]
     assert found["method"] == "FilteredRegression"

@@ -1,4 +1,4 @@
-"""The joint of a data sheet as two hinges: its numbers, read back by other parsers."""
+"""Robot models with a joint of a data sheet as two hinges; other parsers read their numbers."""
 
 import json
 from pathlib import Path
@@ -20,7 +20,7 @@ SETTING = 'method = "FilteredRegression"\nprior.B = 0.2\nprior.tau_coulomb = 0.0
 
 @pytest.fixture(scope="module")
 def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Of an AwAS whose spring is a general polynomial, so that all of it has to be shown."""
+    """Folder with results of an AwAS whose spring is a general polynomial with all powers."""
     configuration = CONFIGURATION + SETTING + "rls.n = 4\nrls.symmetric = false\n"
     folder = tmp_path_factory.mktemp("knee")
     out = estimated(folder, awas_log(1.0, 0.3, 10.0), configuration, "--out .")
@@ -36,7 +36,7 @@ def sheet(results: Path) -> Sheet:
 
 
 def torque(sheet: Sheet, phi: Any) -> Any:
-    """As the page says: sum of eta[i][j] set-point^powers_of_set_point[j] phi^powers_of_phi[i]."""
+    """Sum of eta[i][j] set-point^powers_of_set_point[j] phi^powers_of_phi[i], as documented."""
     p, setting = sheet["polynomial"], sheet["at_the_end"]["set_point"]
     of_phi = np.array(p["eta"]) @ setting ** np.array(p["powers_of_set_point"], float)
     return of_phi @ phi ** np.array(p["powers_of_phi"])[:, None]

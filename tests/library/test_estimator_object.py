@@ -1,4 +1,4 @@
-"""sigmahat.Estimator: the numbers of the FMU without the FMU, and clear words on misuse."""
+"""sigmahat.Estimator gives the results of the FMU without the FMU, and clear error messages."""
 
 import copy
 import pickle
@@ -30,7 +30,7 @@ SETTINGS: list[dict[str, Any]] = [
 
 @pytest.fixture(scope="module")
 def z() -> Samples:
-    """Measurements of table1, a gap of ten samples among them."""
+    """Measurements of the scenario table1, with a gap of ten samples."""
     plant = one_seed("table1").recording.plant
     measured = {name: plant[f"{name}_measured"][:N].copy() for name in INPUTS}
     measured["q"][2000:2010] = np.nan
@@ -90,7 +90,7 @@ def test_many_joints_are_as_many_estimators(z: Samples) -> None:
     assert together.eta.shape == (len(SETTINGS), 6, 3)
     for name, values in together.evaluate([0.0, 0.01]).items():
         np.testing.assert_array_equal(values, [e.evaluate([0.0, 0.01])[name] for e in single])
-    # One mapping: the samples say how many joints there are.
+    # GIVEN one set of parameters, THEN the samples define the number of joints.
     alike = sigmahat.Estimator(SETTINGS[0])
     np.testing.assert_array_equal(alike.run(**several)["sigma"], [alone[0]] * len(SETTINGS))
     tick = alike.tick(**{name: each[:, 0] for name, each in several.items()})
@@ -208,8 +208,8 @@ except KeyboardInterrupt:
 
 
 def test_the_estimate_is_evaluated_at_any_deformation(z: Samples) -> None:
-    """At the point of the last tick it gives the outputs, and nothing is learned. With one sample
-    in a row, the standard deviations are those of this tick, too."""
+    """`evaluate` at the last point of operation returns the last outputs and changes no state. The
+    standard deviations are also equal, as each regression row has one sample."""
     estimator = sigmahat.Estimator(
         {"method": "FilteredRegression", "rls.n": 3, "regression.decimation": 1}
     )
@@ -220,7 +220,7 @@ def test_the_estimate_is_evaluated_at_any_deformation(z: Samples) -> None:
     assert [found[name] for name in names] == pytest.approx(last, rel=1e-12)
     grid = estimator.evaluate(np.linspace(-0.05, 0.05, 5)[:, np.newaxis], [60.0, 80.0])
     assert all(grid[name].shape == (5, 2) for name in names)
-    assert np.all(grid["sigma"][:, 1] > grid["sigma"][:, 0])  # a longer lever
+    assert np.all(grid["sigma"][:, 1] > grid["sigma"][:, 0])  # a longer lever arm
     assert np.array_equal(memory, estimator._joints.memory)
     assert estimator.evaluate(np.nan)["sigma_std"] == np.inf
 

@@ -1,4 +1,4 @@
-"""ROS 2 bags, written and read without a ROS installation."""
+"""Logs in ROS 2 bags, which are written and read without a ROS installation."""
 
 from pathlib import Path
 
@@ -33,7 +33,7 @@ def signals() -> dict[str, np.ndarray]:
 
 
 def write_bag(storage: StoragePlugin) -> None:
-    """A sensor_msgs/JointState every ms, and the torque as std_msgs/Float64."""
+    """Writes a bag with a sensor_msgs/JointState every ms and the torque as std_msgs/Float64."""
     store = get_typestore(Stores.ROS2_HUMBLE)
     joint, number = "sensor_msgs/msg/JointState", "std_msgs/msg/Float64"
     Time, Header, JointState, Float64 = (

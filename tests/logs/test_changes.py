@@ -1,4 +1,4 @@
-"""A stiffness that changes in a log: when and by how much, on the screen and in the report."""
+"""Time and size of a change of the stiffness in a log, as printed text and in the report."""
 
 import json
 from pathlib import Path
@@ -27,7 +27,7 @@ def test_a_step_has_its_time_its_size_and_its_mark(shell: Shell) -> None:
     assert change["relative"] == pytest.approx(-0.5, abs=0.05)
     words = f"the stiffness changed by {100 * change['relative']:+.0f} % at {change['t [s]']:.4g} s"
     assert words in json.loads(Path("out/estimate.json").read_text())["notes"]
-    # THEN the table, which the report marks, has the same time and no coefficient
+    # THEN the table contains no coefficients, and the report marks the same time.
     assert not any("eta[" in name for name in read_estimate(Path("out")).column_names)
     shell.run("report out --quiet")
     with opened(Path("out/report.html").absolute()) as page:
@@ -38,7 +38,7 @@ def test_a_step_has_its_time_its_size_and_its_mark(shell: Shell) -> None:
 
 
 def test_the_size_needs_a_confident_estimate_before_and_after() -> None:
-    """GIVEN sigma = 10 + 2 phi setPoint, later 30 + 2 phi setPoint; at the change both are 2."""
+    """GIVEN a stiffness of 10 + 2 phi setPoint, which changes to 30 + 2 phi setPoint."""
     changes = Changes({"rls.n": 3, "rls.m": 2, "rls.symmetric": False}, 0.5)
     outputs = {name: np.zeros(8) for name in changes.names} | {
         "eta[1,0]": np.repeat([10.0, 30.0], 4),
@@ -48,7 +48,7 @@ def test_the_size_needs_a_confident_estimate_before_and_after() -> None:
         "phi": np.full(8, 2.0),
         "setPoint": np.full(8, 2.0),
     }
-    # THEN the start at 2.5 s is of the change at 2 s, which the estimate did not follow yet
+    # THEN the restart at 2.5 s belongs to the change at 2 s, which the estimate had not followed.
     for part in (slice(0, 5), slice(5, 8)):
         changes.add({name: values[part] for name, values in outputs.items()})
     first, second = changes.found
@@ -66,11 +66,11 @@ def test_deformations_of_before_the_last_change_are_not_in_the_data() -> None:
         "a": np.array([1.0, 1.0, 1.0, 1.0, 0.0, 1.0]),
     }
     assert list(since_change(outputs)["phi"]) == [4.0, 5.0]
-    # WHEN no sample was used since the change, nothing else is known
+    # WHEN no sample was used after the change, THEN all deformations remain in the data.
     outputs["a"][5] = 0.0
     assert list(since_change(outputs)["phi"]) == list(range(6))
     outputs["change_age"][:] = -1.0
     assert list(since_change(outputs)["phi"]) == list(range(6))
-    # WHEN the change was in a log before this one, every sample is behind it
+    # WHEN the change was in an earlier log, THEN all samples of this log are after the change.
     outputs["change_age"][:] = np.arange(7.0, 13.0)
     assert list(since_change(outputs)["phi"]) == list(range(6))

@@ -1,4 +1,4 @@
-"""Bad logs and configurations: one line that says where and what to do, exit 2."""
+"""A wrong log or configuration gives exit status 2 and one line with the place and a remedy."""
 
 from pathlib import Path
 
@@ -46,14 +46,14 @@ def test_file_of_another_kind(content: bytes, words: str, shell: Shell) -> None:
 def test_missing_file_and_folder(shell: Shell) -> None:
     Path("log").mkdir()
     assert "ROS 2 bag" in shell.refused("estimate log")
-    for command in ("estimate", "identify"):  # the log is what a mistyped name is about
+    for command in ("estimate", "identify"):  # the error names the missing log
         assert "error: nothere.csv: No such file" in shell.refused(f"{command} nothere.csv")
     write_log(plain_log(), Path("other.csv"))
     assert "sigmahat init" in shell.refused("estimate other.csv")
 
 
 WORD = plain_log()["q"].astype(str)
-"""A word among numbers, and an empty cell before it."""
+"""A column of numbers with a word, and with an empty cell in an earlier row."""
 WORD[700], WORD[300] = "abc", ""
 BACK = plain_log()["t"]
 BACK[1500] = BACK[1400]
@@ -68,7 +68,7 @@ NOT_INCREASING = "does not increase: 1.4 s in row 1501 after 1.499 s"
         ("q", np.array(["1.0", *["fast"] * 1999]), "column 'q' holds text ('fast' in row 2)"),
         ("q", np.full(2000, np.nan), "no number"),
         ("t", BACK, NOT_INCREASING),
-        ("t", BACK_SINCE_1970, NOT_INCREASING),  # times are told from the first row
+        ("t", BACK_SINCE_1970, NOT_INCREASING),  # the error gives times since the first row
     ],
 )
 def test_values_that_do_not_fit(column: str, values: np.ndarray, words: str, shell: Shell) -> None:
@@ -109,7 +109,7 @@ def test_values_that_do_not_fit(column: str, values: np.ndarray, words: str, she
         ("motor.gamma = 50", "modality = 'Sensr'", "did you mean 'Sensor'"),
         ("motor.gamma = 50", "model.r_0 = nan", "model.r_0: expected a finite number, got nan"),
         ("motor.gamma = 50", "motor.gamma = 0", "motor.gamma is 0; fill in the gear ratio"),
-        # What was called otherwise before
+        # A parameter that had another name in earlier versions
         ("motor.B", "matched.memory", "it is called 'regression.memory' now"),
         ("motor.B", "confidence", "it is called 'limit.relative_std' now"),
         (

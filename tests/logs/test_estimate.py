@@ -1,4 +1,4 @@
-"""`sigmahat estimate`: a log replayed gives what the co-simulation gave."""
+"""`sigmahat estimate` on a recorded log gives the same results as the co-simulation."""
 
 import re
 from pathlib import Path
@@ -64,7 +64,7 @@ def test_replay_is_the_cosimulation(
 
 
 def test_mat_of_version_7_3(log: Columns, tmp_path: Path) -> None:
-    # GIVEN what MATLAB writes: HDF5 behind 512 bytes, vectors as rows of a matrix, a structure
+    # GIVEN a file of MATLAB: HDF5 after 512 bytes, vectors as rows of a matrix, and a structure
     path = tmp_path / "log.mat"
     with h5py.File(path, "w", userblock_size=512) as file:
         for name, values in log.items():
@@ -111,7 +111,7 @@ def test_json_and_quiet(log: Columns, shell: Shell) -> None:
     summary = shell.json("estimate log.parquet --out out")
     last = read_estimate(Path("out"))
     assert last[SIGMA].to_numpy()[-1] == pytest.approx(summary["sigma [N.m/rad]"], rel=STORED)
-    # THEN the coefficients are those of (23) at the last sample
+    # THEN the coefficients give the last stiffness by equation (23).
     eta = np.array(summary["eta"])
     phi = last["estimate.phi [rad]"].to_numpy()[-1]
     set_point = last["estimate.setPoint [1]"].to_numpy()[-1]
@@ -122,21 +122,21 @@ def test_json_and_quiet(log: Columns, shell: Shell) -> None:
 
 
 def test_why_and_how_often_the_estimate_is_not_confident(shell: Shell) -> None:
-    # GIVEN a limit that only part of the estimates meets
+    # GIVEN a limit of the standard deviation that only some of the estimates satisfy
     limits = "limit.relative_std = 0.022\nprior.torque_gain = 0.01\n"
     write_log(awas_log(1.0, 0.3), Path("log.parquet"), REGRESSION + limits)
     result = shell.json("estimate log.parquet --out out")
     table = read_estimate(Path("out"))
     doubt = np.array(table["estimate.doubt"].to_pylist())
     confident = table["estimate.confident"].to_numpy()
-    # THEN the reason is None where it is confident, and only there
+    # THEN the doubt is None exactly where the estimate is confident.
     assert np.array_equal(doubt == "None", confident)
     half = len(doubt) // 2
     assert 0 < result["confident"] < 1
     assert result["confident"] == np.mean(confident[half:])
     items = {*doubt[half:]} - {"None"}
     assert result["doubt"] == {item: np.mean(doubt[half:] == item) for item in items}
-    # THEN what it rests on is that of the FMU, and the summary says it
+    # THEN the summary contains the last values of misfit, sigma_per_gain and bias_hat.
     for name in ("misfit", "sigma_per_gain"):
         stored = table[f"estimate.{name} [1]"].to_numpy()[-1]
         assert result[name] == pytest.approx(stored, rel=STORED, abs=0)

@@ -1,4 +1,4 @@
-"""`sigmahat estimate --start-from` goes on from what was learned, and refuses what does not fit."""
+"""`sigmahat estimate --start-from` continues from a saved state, or refuses a wrong state."""
 
 import base64
 import json
@@ -28,13 +28,13 @@ def log() -> Columns:
 
 
 def part(log: Columns, rows: slice) -> Columns:
-    """Rows of a log, whose times begin at 0."""
+    """Returns some rows of a log, with times that begin at 0."""
     cut = {name: values[rows] for name, values in log.items()}
     return {**cut, "t": cut["t"] - cut["t"][0]}
 
 
 def estimate(name: str, *options: str) -> pa.Table:
-    """The table of a log of this name."""
+    """Runs `estimate` on the log with this name, and returns the table of results."""
     arguments = ["estimate", f"{name}.parquet", "--config", "joint.toml", "--out", name]
     assert main([*arguments, "--quiet", *options]) == 0
     return read_estimate(Path(name))
@@ -57,7 +57,7 @@ def original(log: Columns, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def learned(original: Path, shell: Shell) -> Shell:
-    """Commands in a folder in which `first` was learned from the first half of the log."""
+    """A shell in a folder whose folder `first` has the results for the first half of the log."""
     shutil.copytree(original, Path(), dirs_exist_ok=True)
     return shell
 
@@ -69,8 +69,8 @@ def learned(original: Path, shell: Shell) -> Shell:
     ids=["FilteredRegression", "Paper2011", "Sensor"],
 )
 def test_two_logs_are_one_log_with_a_gap(configuration: str, ticks: int, log: Columns) -> None:
-    """To the last bit, also if the ports of the second log differ. Paper2011 needs a gap of
-    2 / K_I = 6.7 ms, so that it starts again."""
+    """GIVEN a log in two parts, whose ports may differ, THEN the results are exactly those of one
+    log with a gap. Paper2011 needs a gap of 2 / K_I = 6.7 ms, so that Paper2011 restarts."""
     write_halves(log, configuration)
     lost = np.full(ticks, np.nan)
     columns = {n: np.concatenate([v[:HALF], lost, v[HALF:]]) for n, v in log.items()}
@@ -86,7 +86,7 @@ def test_two_logs_are_one_log_with_a_gap(configuration: str, ticks: int, log: Co
         if name.startswith("estimate.") and name != "estimate.t [s]":
             theirs = whole[name].to_pylist()[HALF + ticks :]
             assert second[name].to_pylist() == theirs, name
-    # THEN it has learned from both: alone, the second half gives something else
+    # THEN the result depends on both halves, as the second half alone gives another stiffness.
     assert estimate("second")[SIGMA].to_numpy()[-1] != whole[SIGMA].to_numpy()[-1]
 
 
@@ -99,15 +99,15 @@ def test_what_was_learned_from_is_said_and_handed_on(learned: Shell) -> None:
     (log,) = first["logs"]
     assert (log["file"], log["ticks"], log["skipped"]) == ("first.parquet", HALF, 0)
     assert log["sha256"] == sha256(Path("first.parquet"))
-    # WHEN a second log goes on from it
+    # WHEN the estimate of a second log continues from the saved state
     said = learned.run(f"{SECOND} --start-from first/state.json")
     assert "continued from what was learned from first.parquet" in said
-    assert learned.err == ""  # the gap between the logs is no news
+    assert learned.err == ""  # no warning about the gap between the logs
     state = json.loads(Path("second/state.json").read_text())
     sheet = json.loads(Path("second/joint.json").read_text())
     assert [each["file"] for each in state["logs"]] == ["first.parquet", "second.parquet"]
     assert sheet["logs"] == state["logs"]
-    # THEN a third log goes on from both, also over the results themselves
+    # THEN a third estimate continues from both logs, even if it replaces these results.
     result = learned.json(f"{SECOND} --start-from second")
     assert result["learned_from"] == ["first.parquet", "second.parquet"]
 
@@ -124,7 +124,7 @@ def test_what_was_learned_from_is_said_and_handed_on(learned: Shell) -> None:
     ],
 )
 def test_another_configuration_is_refused(old: str, new: str, words: str, learned: Shell) -> None:
-    """The state contains the parameters, so that none of them may differ."""
+    """A saved state contains all parameters, and none of them may differ in the configuration."""
     assert old in REGRESSION
     Path("joint.toml").write_text(REGRESSION.replace(old, new))
     line = learned.refused(f"{SECOND} --start-from first")

@@ -51,7 +51,7 @@ def test_the_general_basis_fits_the_torque_the_odd_one_does_not(
 
 
 def test_the_recursion_ends_at_the_batch_fit(measured: Logs, general: Estimator) -> None:
-    # GIVEN all samples at once THEN linear least squares, scaled to be well conditioned, fit alike
+    # THEN scaled linear least squares over all samples give the same curve as the recursion.
     unit_phi, unit_l = 0.2, 45.0
     settings = [(log.setting / unit_l) ** np.arange(M) for log in measured]
     powers = [(log.phi[:, None] / unit_phi) ** np.arange(N) for log in measured]
@@ -75,7 +75,7 @@ def test_a_setting_left_out_is_predicted(
 def test_stiffness_is_the_slope_of_the_measured_curve(
     measured: Logs, general: Estimator, odd: Estimator
 ) -> None:
-    # Holds for windows of +-0.05 to +-0.06 rad, which were chosen with the data in view
+    # The tested windows of +-0.05 to +-0.06 rad were chosen after a look at the data.
     print(real_joint.stiffness_table(measured, general, odd))
     for half_width in (0.05, 0.055, 0.06):
         assert real_joint.worst(measured, general, half_width) <= 10.0
@@ -93,8 +93,8 @@ def test_filtered_regression_is_no_worse(measured: Logs, general: Estimator) -> 
 
 
 def test_filtered_regression_claims_what_it_knows(measured: Logs, general: Estimator) -> None:
-    """The joint has hysteresis of several N.m. With the columns for misfits the torque is hardly
-    worse, and the interval contains the slope of the mean curve."""
+    """The joint has a hysteresis of several N.m. With columns for model errors, the torque is
+    hardly less accurate, and the interval contains the slope of the mean curve."""
     fit = real_joint.replay(measured, False, real_joint.FILTERED_REGRESSION)
     found = [log.rms(fit) for log in measured]
     of_general = [log.rms(general) for log in measured]
@@ -104,7 +104,7 @@ def test_filtered_regression_claims_what_it_knows(measured: Logs, general: Estim
 
 
 def test_check_finds_nothing_wrong_in_a_right_setup(data: Path) -> None:
-    """On this bench theta is the compliance of the bench, computed from the torque."""
+    """The column theta of this test bench is the deflection of the bench, computed from torque."""
     ports = {
         "theta": Port("torque_Nm", scale=1 / real_joint.DYNAMOMETER),
         "q": Port("angle_rad"),

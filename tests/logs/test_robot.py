@@ -1,6 +1,6 @@
-"""Three axes of an industrial robot, as a user would treat their logs. See docs/robot.md.
+"""Estimates for three axes of an industrial robot, made like a user would. See docs/robot.md.
 
-The requirements are those of the issue that asked for it; intervals are of 95 %.
+An issue of the project defined these requirements. All intervals have a confidence of 95 %.
 """
 
 from collections.abc import Callable
@@ -34,7 +34,7 @@ def test_the_stiffness_of_axis_3_is_found(study: Study) -> None:
         assert 4.1e6 <= each.stiffness <= 5.8e6
         assert 1.96 * each.std <= 0.35 * each.stiffness
     assert abs(a.stiffness - b.stiffness) <= 1.96 * min(a.std, b.std)
-    # THEN the torque of the other run follows from it
+    # THEN the estimated spring predicts the torque of the other run.
     for other in axis.validated:
         assert other["torque below 2 Hz"]["relative [1]"] <= 0.13
         assert other["agree"]

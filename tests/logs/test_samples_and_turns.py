@@ -1,4 +1,4 @@
-"""Samples at ticks: a counter that goes on during a gap, and logs of too many ticks."""
+"""Conversion of log rows to samples: a counter that moves during a gap, and very long logs."""
 
 import re
 from pathlib import Path
@@ -15,7 +15,7 @@ from sigmahat.logs.replay import parameters
 from sigmahat.logs.sampling import Samples, sample
 
 GEAR, COUNTS, T = 80, 2**14, 2e-3
-PERIOD = 2 * np.pi / GEAR  # of the counter of the motor, behind the gear [rad]
+PERIOD = 2 * np.pi / GEAR  # period of the motor counter, after the gear [rad]
 MOTOR = Port("motor", unit="counts", counts_per_turn=COUNTS, gear_ratio=GEAR, wrap=COUNTS)
 
 
@@ -24,7 +24,7 @@ CONFIGURATION = Configuration(Path("elbow.toml"), Time("t"), PORTS, {})
 
 
 def log(gap: slice) -> tuple[LogInMemory, np.ndarray]:
-    """A motor that turns its encoder many times, whose log has a gap; theta behind the gear."""
+    """A log with a gap, of a motor that makes many turns; theta is the angle after the gear."""
     t = T * np.arange(2000)
     theta = 0.5 * np.sin(3 * t)
     counts = np.round(theta * GEAR * COUNTS / (2 * np.pi)) % COUNTS
@@ -46,7 +46,7 @@ def test_turns_during_a_gap_are_those_of_the_other_encoder(gap: slice) -> None:
 
 
 def sampled(columns: dict[str, np.ndarray], **ports: Port) -> Samples:
-    """A log with a column "t", its columns being those of the ports, at ticks of 2 ms."""
+    """Samples every 2 ms of a log with the time column "t" and one column for each port."""
     setup = Configuration(Path("log.toml"), Time("t"), ports, {})
     return sample(LogInMemory(Path("log"), columns), setup, T)
 
@@ -65,7 +65,7 @@ def test_rows_that_are_lost_are_ticks_without_a_value_as_empty_cells_are() -> No
 
 
 def test_slow_and_uneven_columns_are_interpolated() -> None:
-    """GIVEN a column that is empty but for every tenth row, and rows at times that jitter."""
+    """GIVEN a column with a value in every tenth row only, and rows with jittering times."""
     t = T * (np.arange(1000) + np.random.default_rng(1).uniform(-0.2, 0.2, 1000))
     slow = np.where(np.arange(1000) % 10, np.nan, 5 * t)
     found = sampled({"t": t, "x": 3 * t, "slow": slow}, theta=Port("x"), theta_c=Port("slow"))
@@ -92,7 +92,7 @@ def test_filters_are_not_faster_than_the_samples(period: float, rate: float | No
 
 
 def test_a_slow_log_and_one_with_a_pause(monkeypatch: pytest.MonkeyPatch) -> None:
-    """They may have 20 ticks for a row, if they are many."""
+    """A log with very many ticks may have at most 20 ticks for each row."""
     monkeypatch.setattr("sigmahat.logs.sampling._MOST_TICKS", 500_000)
     rows = 51_000
     columns = dict.fromkeys(("motor", "link", "torque"), np.arange(rows, dtype=np.float64))

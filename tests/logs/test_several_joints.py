@@ -1,4 +1,4 @@
-"""From a log of several joints to one report, as a user goes; the joints are simulated by scipy."""
+"""All commands from a log of several joints to one report. The joints are simulated by scipy."""
 
 import json
 from pathlib import Path
@@ -17,7 +17,7 @@ COUNTS = 16384
 
 @pytest.mark.slow("a user's way from init to validate, for two joints")
 def test_from_the_log_to_one_report(shell: Shell) -> None:
-    """Two joints of one stiffness; the drive of the knee shows half of the current."""
+    """GIVEN two joints of equal stiffness, and a knee drive that measures half of its current."""
     motion = joint(False)
     log = {"t": motion.t}
     for name, share in (("hip", 1.0), ("knee", 0.5)):
@@ -38,7 +38,7 @@ def test_from_the_log_to_one_report(shell: Shell) -> None:
     shell.run("identify leg.csv")
     text = Path("leg.toml").read_text()
     assert "# its drive shows half of the current" in text
-    assert "motor.B" not in tomlkit.dumps(tomlkit.parse(text)["parameters"])  # each has its own
+    assert "motor.B" not in tomlkit.dumps(tomlkit.parse(text)["parameters"])  # joints differ
     said = shell.run("check leg.csv")
     assert said.count("nothing in 7 s of the log contradicts") == 2
 
@@ -55,10 +55,10 @@ def test_from_the_log_to_one_report(shell: Shell) -> None:
     assert "hip: Stiffness against deformation" in page
     assert "knee: Stiffness against deformation" in page
     assert "leg.csv with leg.toml; sigmahat " in page
-    # The motor is in one column each: the first log confirms itself for every joint, or for none.
+    # THEN `validate` reports for both joints that their results come from this same log.
     said = shell.run("validate leg.csv --with leg.toml", 1)
     assert said.count("learned before from leg.csv") == 2
-    # THEN one of them by its name is estimated as from a configuration of its own
+    # THEN a joint selected by name gives the same estimate as with its own configuration.
     Path("knee.toml").write_text(tomlkit.dumps(of_joint(tomlkit.parse(text), "knee")))
     by_name, alone = (
         shell.json(f"estimate leg.csv --out out {option}")

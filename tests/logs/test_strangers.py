@@ -1,4 +1,4 @@
-"""Logs, configurations and plans from strangers: no crash, no hang, no memory, no other file."""
+"""Malicious logs, configurations and plans cause no crash, endless loop or access to files."""
 
 import os
 import struct
@@ -22,7 +22,7 @@ from sigmahat.logs.readers.formats import open_log
 from strange_files import TRIALS, Trial, complaint_of
 
 EXAMPLES = int(os.environ.get("SIGMAHAT_STRANGERS", "40"))
-"""More, and others each time, if somebody asks for so many."""
+"""Number of examples. With SIGMAHAT_STRANGERS set, each run tests other random examples."""
 CONFIGURED = CONFIGURATION.replace("motor.B", "rls.n = 3\nmotor.B")
 
 
@@ -31,7 +31,7 @@ Run = Callable[[str], Done]
 
 @pytest.fixture
 def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Run:
-    """Runs a command in a folder with a configuration; nothing may be wrong with it."""
+    """Runs a command in a folder with a configuration; the command must not crash."""
     monkeypatch.chdir(tmp_path)
     Path("log.toml").write_text(CONFIGURATION)
 
@@ -62,7 +62,7 @@ def mat(values: np.ndarray, path: Path) -> None:
 
 
 def kind_in_mat(kind: int, packed: bool, path: Path) -> None:
-    """A vector whose numbers are said to be of another kind."""
+    """Writes a MATLAB file that declares a wrong number type for a vector."""
     scipy.io.savemat(path, {"t": np.arange(1000.0)})
     content = bytearray(path.read_bytes())
     place = content.index(struct.pack("<II", 9, 8000))
@@ -138,8 +138,8 @@ def test_a_log_that_is_more_than_it_seems(
 
 @pytest.mark.parametrize("value", [0x00, 0xFF])
 def test_a_parquet_file_with_a_damaged_description(value: int, run: Run) -> None:
-    """GIVEN one wrong byte in what the file says of its columns, THEN it is read or refused.
-    pyarrow ends the process for some of them, if it is asked for the size of a column."""
+    """GIVEN a wrong byte in the metadata of a file, THEN the file is read or refused. For some
+    wrong bytes, a request for the size of a column would make pyarrow abort the process."""
     whole = write_log(plain_log(300), Path("whole.parquet")).read_bytes()
     begin = len(whole) - 8 - int.from_bytes(whole[-8:-4], "little")
     for place in range(begin, begin + 70, 3):
@@ -149,7 +149,7 @@ def test_a_parquet_file_with_a_damaged_description(value: int, run: Run) -> None
 
 
 def test_a_log_of_which_no_tick_can_be_used(run: Run) -> None:
-    """GIVEN a scale that makes every value too large, THEN there are results, and all say so."""
+    """GIVEN a scale that makes every value too large, THEN `estimate` reports 300 skipped ticks."""
     too_large = CONFIGURATION.replace('"theta_c"', '"theta_c"\nscale = 1e300')
     write_log(plain_log(300), Path("log.csv"), too_large)
     done = run("estimate log.csv --out results")

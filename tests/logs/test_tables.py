@@ -1,4 +1,4 @@
-"""CSV logs, which are parsed once; the estimates as a table, and in MCAP, pandas and xarray."""
+"""CSV logs, and the table of estimates in its own file, in MCAP, in pandas and in xarray."""
 
 import json
 from pathlib import Path
@@ -28,7 +28,7 @@ ROWS = 2000
 
 
 def test_a_csv_log_is_parsed_once(tmp_path: Path) -> None:
-    # GIVEN a file that is gone once it has been opened THEN all of its numbers are there
+    # GIVEN a file that is deleted after it was opened, THEN all of its numbers are available.
     path = write_log(plain_log(), tmp_path / "log.csv")
     log = open_log(path)
     path.unlink()
@@ -40,7 +40,7 @@ def test_a_csv_log_is_parsed_once(tmp_path: Path) -> None:
 
 
 def test_a_column_that_begins_with_numbers_may_go_on_with_text(tmp_path: Path) -> None:
-    # GIVEN text behind the part of the file that decides on the types
+    # GIVEN text after the first part of the file, which determines the types of columns
     rows = 40_000
     note = np.arange(rows).astype(str)
     note[-1] = "end"
@@ -56,8 +56,8 @@ def test_a_column_that_begins_with_numbers_may_go_on_with_text(tmp_path: Path) -
 
 @pytest.mark.parametrize("begin", [0, 500], ids=["whole numbers", "fractions later"])
 def test_whole_numbers_stay_whole_numbers(begin: int, tmp_path: Path) -> None:
-    # GIVEN nanoseconds since 1970, which a float64 does not hold, and a column that is whole
-    # at rest and has fractions behind the part of the file that decides on the types
+    # GIVEN a column of nanoseconds since 1970, which a float64 cannot represent exactly
+    # GIVEN a column with integers at first and fractions in a later part of the file
     rows = ROWS if not begin else 60_000
     stamps = 1_700_000_000_123_456_789 + 1_000_000 * np.arange(rows, dtype=np.int64)
     note = np.array(["0"] * (rows - begin) + ["0.5"] * begin)
@@ -97,7 +97,7 @@ def test_dates_are_times_and_stay_as_they_are(shell: Shell) -> None:
 
 
 def test_a_text_as_programs_write_it_is_read_with_a_word(shell: Shell) -> None:
-    """Windows-1252, a line of units, decimal commas, a time twice, and a last line that is cut."""
+    """GIVEN a log in Windows-1252 with a line of units, decimal commas and a truncated last row."""
     write_log(plain_log(), Path("clean.csv"))
     names, *rows = Path("clean.csv").read_text().replace('"', "").replace(",", ";").splitlines()
     units = {"t": "s", "theta": "rad", "q": "rad", "theta_c": "mm", "tau": "N.m"}
@@ -119,7 +119,7 @@ def test_a_text_as_programs_write_it_is_read_with_a_word(shell: Shell) -> None:
     said = shell.run("estimate dirty.csv --out dirty")
     assert "1 rows with the time of the row before left out" in said
     clean, dirty = EstimateTable(Path("clean")), EstimateTable(Path("dirty"))
-    got = np.delete(dirty["sigma"], 18)  # the time that stands twice
+    got = np.delete(dirty["sigma"], 18)  # row with a duplicate time
     assert np.array_equal(got[: ROWS - 1], clean["sigma"][: ROWS - 1])
     last = Path("dirty/estimate.csv").read_text().splitlines()[-1]
     assert ";" in last and "." not in last.replace("FilteredRegression", "")
@@ -133,7 +133,7 @@ def test_estimates_are_read_as_they_were_written(suffix: str, shell: Shell) -> N
     assert next(iter(signals)) == "sigma" and signals.used.all()
     units = signals.units
     assert units.items() >= {"t": "s", "sigma": "N.m/rad", "a": "1", "valid": None}.items()
-    assert not units.keys() & {"note", "q", "theta"}  # these are in the log
+    assert not units.keys() & {"note", "q", "theta"}  # these columns are in the log
     for values in signals.values():
         assert values.dtype == np.float64 and values.shape == (ROWS,)
     phi = plain_log()["q"] - plain_log()["theta"]
@@ -146,7 +146,7 @@ def test_estimates_are_read_as_they_were_written(suffix: str, shell: Shell) -> N
 
 @pytest.fixture(scope="module")
 def knee(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with a log, its configuration and results."""
+    """Folder with a log, the configuration of the log, and its results."""
     columns = awas_log(1.0, 0.3, 3.0)
     columns["q"][500] = np.nan
     return estimated(tmp_path_factory.mktemp("knee"), columns, REGRESSION, "--out . --to mcap")

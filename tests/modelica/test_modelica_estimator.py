@@ -1,4 +1,4 @@
-"""The C of the Modelica package, called as by a tool: the numbers of sigmahat.Estimator."""
+"""The C functions of the Modelica package give the same results as sigmahat.Estimator."""
 
 import ctypes
 import math
@@ -31,7 +31,7 @@ INPUTS = ("theta", "q", "theta_c", "tau", "tau_e_sensor")
 
 
 class Tool:
-    """The external functions in a library, each compiled alone, and how the block calls them."""
+    """A library of the external functions, each compiled alone, and calls like the block's."""
 
     def __init__(self, package: Path, folder: Path, fmu: Fmu) -> None:
         self.fmu, self.sources = fmu, package / "Resources" / "C-Sources"
@@ -64,7 +64,7 @@ class Tool:
         self.library.sigmahat_standard_normal.restype = ctypes.c_double
 
     def compiled(self, folder: Path, text: str, *flags: str) -> Path:
-        """The object file of a translation unit with this text."""
+        """Compiles a translation unit with this text and returns its object file."""
         source = Path(tempfile.mkdtemp(dir=folder)) / "unit.c"
         source.write_text(text)
         search = (f"-I{self.sources}", f"-I{DRIVERS}")
@@ -72,17 +72,17 @@ class Tool:
         return source.with_suffix(".o")
 
     def messages(self) -> str:
-        """The messages since the last call."""
+        """Error messages since the last call of this function."""
         buffer = ctypes.c_char.in_dll(self.library, "tool_messages")
         text = ctypes.string_at(ctypes.addressof(buffer)).decode()
         buffer.value = b"\0"
         return text
 
     def values(self, parameters: Mapping[str, Any]) -> tuple[list[float], list[int], list[float]]:
-        """The arguments of the constructor, from parameters by their names in the FMU."""
+        """Returns the arguments of the constructor for parameters with their names in the FMU."""
 
         def number(name: str) -> float:
-            # A number stands for a parameter that the block does not have.
+            # The block passes a number instead of a parameter that it does not have.
             known = name in parameters
             return self.fmu.number(name, parameters[name]) if known else float(name)
 
@@ -90,7 +90,7 @@ class Tool:
         return [*map(number, self.reals)], [int(number(n)) for n in self.integers], eta_0
 
     def new(self, parameters: Mapping[str, Any]) -> int | None:
-        """A new object; None after an error."""
+        """Creates an external object, or returns None after an error."""
         reals, integers, eta_0 = self.values(parameters)
         made: int | None = self.library.tool_new(
             (ctypes.c_double * len(reals))(*reals),
@@ -102,10 +102,10 @@ class Tool:
     def run(
         self, parameters: Mapping[str, Any], samples: NDArray[np.float64], *before: float
     ) -> dict[str, NDArray[Any]]:
-        """Outputs of a tick for each of the samples, time and inputs.
+        """Returns the outputs of a tick for each row of samples, which has time and inputs.
 
-        Another object runs in between, with other inputs. With `before`, each tick is made twice,
-        first with these inputs.
+        A second object with other inputs makes a tick in between. With `before`, each tick is
+        repeated: first with the inputs of `before`, then with those of `samples`.
         """
         objects = [ctypes.c_void_p(self.new(parameters)) for _ in range(2)]
         types: dict[str, Any] = {"double": ctypes.c_double, "int": ctypes.c_int}
@@ -124,14 +124,14 @@ class Tool:
         return {name: np.array(each) for name, each in rows.items()}
 
     def declared(self, name: str) -> tuple[str, int]:
-        """Type in C, and number of entries, of an output."""
+        """Returns the C type and the number of elements of an output."""
         if name == "eta":
             return "double", 40
         return "double" if self.fmu.variable(name).type == "Real" else "int", 1
 
 
 def _parameter(expression: str) -> str:
-    """The name in the FMU of a parameter that the block gives as a number."""
+    """Returns the FMU name of a parameter from the Modelica expression that the block passes."""
     name = re.sub(r"Integer\((.*)\)|if (.*) then 1 else 0", r"\1\2", expression.strip())
     for theirs, ours in KEYWORDS.items():
         name = re.sub(rf"^{ours}\.", f"{theirs}.", name)
@@ -144,7 +144,7 @@ def gcc(*arguments: str | Path) -> None:
 
 @pytest.fixture(scope="module")
 def tool(build: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Tool]:
-    """Of the package in the archive."""
+    """The compiled functions of the package in the archive."""
     folder = tmp_path_factory.mktemp("package")
     with ZipFile(build / "release" / "sigmahat-modelica.zip") as archive:
         archive.extractall(folder)
@@ -168,20 +168,20 @@ SETTINGS: dict[str, dict[str, Any]] = {
 
 
 def otherwise(setting: Mapping[str, Any]) -> dict[str, Any]:
-    """All parameters of the block; the reals are not those of the start, each by its own factor."""
+    """Returns all parameters of the block, with real values that each differ from the default."""
     changed: dict[str, Any] = {}
     for number, (name, value) in enumerate(sigmahat.Estimator().parameters[0].items()):
         if isinstance(value, float) and name != "samplePeriod":
             changed[name] = (value or 1e-3) * (1 + 0.02 * math.sin(number))
         else:
             changed[name] = value
-    del changed["encoder.theta_c"]  # it is not in the block, as it has no effect
+    del changed["encoder.theta_c"]  # it has no effect, so the block omits it
     return {**changed, **setting}
 
 
 @pytest.fixture(scope="module")
 def samples() -> NDArray[np.float64]:
-    """Time and inputs of table1, a sample that is not finite among them."""
+    """Time and inputs of the scenario table1, with one sample that is not finite."""
     plant = one_seed("table1").recording.plant
     columns = [plant[f"{n}_measured"][:N] for n in ("theta", "q", "theta_c", "tau", "tau_e")]
     z = np.column_stack([T * np.arange(N), *columns])
@@ -193,7 +193,7 @@ def samples() -> NDArray[np.float64]:
 def test_the_outputs_are_those_of_the_library_to_the_last_bit(
     setting: dict[str, Any], samples: NDArray[np.float64], tool: Tool
 ) -> None:
-    """Each parameter has a value of its own, so that none takes the place of another."""
+    """Each parameter has a unique value, so that the test detects swapped arguments."""
     parameters = otherwise(setting)
     found = tool.run(parameters, samples)
     eta = [f"eta[{i},{j}]" for i in range(8) for j in range(5)]
@@ -220,7 +220,7 @@ def test_a_second_tick_at_the_same_time_replaces_the_first(
 
 @pytest.mark.slow("the library is compiled with the sanitizer")
 def test_all_in_one_file_they_run_without_an_error_of_memory(tool: Tool, tmp_path: Path) -> None:
-    """A tool may put all external functions into one file, each Include once or several times."""
+    """A Modelica tool may write all external functions and repeated includes into one file."""
     includes = "".join(tool.includes) * 2 + '#include "sigmahat_noise.c"\n#include "tool.c"\n'
     given = "const double reals[] = {%s}; const int integers[] = {%s}; const double eta_0[] = {%s};"
     lists = (", ".join(map(repr, each)) for each in tool.values(otherwise(SETTINGS["regression"])))
@@ -267,7 +267,7 @@ def test_skipped_ticks_and_too_large_deformations_are_told_once(
 
 def test_the_noise_is_that_of_the_plants(tool: Tool) -> None:
     start = {"noise.seed": 7, "noise.tau_variance": 4.0, "noise.tau_e_variance": 9.0}
-    # The plant is at rest: nothing but noise is measured. TorqueNoise.mo has these channels.
+    # GIVEN a plant at rest, THEN it measures only noise, from the channels of TorqueNoise.mo.
     deviation = {f"{n}_{i}": sd for i in (1, 2) for n, sd in NOISY.items()}
     recording = simulate(Plant("AntagonisticVsaPlant", start, {}, list(deviation)), {}, T, 1000)
     for channel, (name, factor) in enumerate(deviation.items()):

@@ -1,6 +1,6 @@
-"""The Modelica package: parsers read it, examples compile, blocks and plants work in rumoca.
+"""Parsers read the Modelica package, its examples compile, and rumoca simulates its models.
 
-rumoca calls no C, so functions of Modelica stand in the place of those of C.
+rumoca cannot call C, so Modelica functions replace the C functions.
 """
 
 import math
@@ -26,7 +26,7 @@ from sigmahat.fmi.series import Series
 from sigmahat.runs.scenario import Sine, T
 
 SPECIAL = {
-    "sigma": "estimator.reals[3] + t",  # the gear ratio shows whose motor it is
+    "sigma": "estimator.reals[3] + t",  # the gear ratio identifies the motor
     "sigma_std": "tau_e_sensor",
     "phi": "q - theta",
     "setPoint": "theta_c",
@@ -37,7 +37,7 @@ SPECIAL = {
     "confident": "true",
     "valid": "theta < 10",
 }
-"""What the function gives for some outputs; every other one is its place in the list of them."""
+"""Values of some outputs of the test function. Any other output equals its own index."""
 
 
 def outputs() -> list[str]:
@@ -49,7 +49,7 @@ def outputs() -> list[str]:
 
 @pytest.fixture(scope="module")
 def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The package with a record for the external object, and an algorithm for a tick."""
+    """The package, with a record as external object and a Modelica algorithm as tick function."""
     copy = tmp_path_factory.mktemp("package") / "Sigmahat"
     shutil.copytree(PACKAGE, copy)
     file = copy / "Estimators" / "Internal.mo"
@@ -73,7 +73,7 @@ def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def simulated(package: Path, block: str, values: Mapping[str, str], changed: str) -> Any:
-    """A block under inputs that are expressions, for 50 ms."""
+    """Simulates a block for 50 ms; its inputs are Modelica expressions."""
     equations = " ".join(f"b.{name} = {value};" for name, value in values.items())
     text = f"model Test Sigmahat.Estimators.{block} b({changed}); equation {equations} end Test;"
     return compiled(text, package=package).simulate(t=(0.0, 0.05), dt=1e-3)
@@ -106,7 +106,7 @@ def test_ticks_are_at_the_start_time_and_every_sample_period_after_it(package: P
     for moment in (0.002, 0.0052, 0.0148, 0.0152, 0.0448):
         row = int(np.searchsorted(found.time, moment + 1e-9)) - 1
         last = 0.005 + 0.01 * np.floor((moment - 0.005) / 0.01) if moment > 0.005 else None
-        # The value before the first tick is the start value.
+        # Before the first tick, an output has its start value.
         assert found["b.sigma"][row] == pytest.approx(0 if last is None else 50 + last)
         assert found["b.phi"][row] == pytest.approx(0 if last is None else 2 * last)
 
@@ -130,7 +130,7 @@ NONE, NOT_EXCITED, MISFIT, OUT_OF_RANGE = 1, 3, 4, 5
     [
         ((0.1, 0.1), 1.0, NONE),
         ((0.1, 0.1), 100.0, NOT_EXCITED),
-        ((0.7, 0.1), 1.0, NONE),  # that one side moves too little is no reason
+        ((0.7, 0.1), 1.0, NONE),  # one motor may move too little
         ((0.7, 0.1), 100.0, NOT_EXCITED),
         ((1.5, 0.1), 1.0, MISFIT),
         ((0.1, 2.5), 1.0, OUT_OF_RANGE),
@@ -140,7 +140,7 @@ NONE, NOT_EXCITED, MISFIT, OUT_OF_RANGE = 1, 3, 4, 5
 def test_the_device_is_the_sum_of_its_sides(
     theta: tuple[float, float], sigma_std: float, doubt: int, package: Path
 ) -> None:
-    """As fmu_src/AntagonisticStiffnessEstimator.c judges it."""
+    """The block has the same output `doubt` as fmu_src/AntagonisticStiffnessEstimator.c."""
     inputs = {
         **{f"theta_{i}": str(value) for i, value in enumerate(theta, start=1)},
         **{"q": "0.3", "tau_1": "0.1", "tau_2": "0.2"},
@@ -159,10 +159,10 @@ def test_the_device_is_the_sum_of_its_sides(
     assert (last["doubt"], last["confident"], last["valid"]) == (doubt, doubt == NONE, True)
 
 
-# The plants move as their FMUs do
+# The Modelica plants have the same outputs as the FMUs of the plants
 
 AGREEMENT = 1e-6
-"""Greatest difference of an output, relative to its range."""
+"""Largest allowed difference of an output, relative to the range of this output."""
 
 
 def fmu_variables(plant: str) -> dict[str, Any]:
@@ -172,7 +172,7 @@ def fmu_variables(plant: str) -> dict[str, Any]:
 def outputs_of_fmu(
     plant: str, inputs: Mapping[str, Sine], start: Mapping[str, float], duration: float
 ) -> Series:
-    """All outputs without noise, at every T."""
+    """Simulates the FMU of a plant without noise and returns its outputs with the period T."""
     names = [n for n, v in fmu_variables(plant).items() if v.causality == "output"]
     silent = {"noise.tau_variance": 0.0, "noise.tau_e_variance": 0.0}
     model = Plant(plant, {**silent, **start}, inputs, names)
@@ -182,7 +182,7 @@ def outputs_of_fmu(
 def run(
     plant: str, inputs: Mapping[str, Sine], start: Mapping[str, float], duration: float
 ) -> tuple[Series, dict[str, NDArray[np.float64]]]:
-    """The outputs of the FMU without noise and of the model, at every T, under all inputs."""
+    """Simulates FMU and Modelica model of a plant without noise and returns their outputs."""
     recorded = outputs_of_fmu(plant, inputs, start, duration)
     equations = []
     for name, s in inputs.items():
@@ -192,11 +192,11 @@ def run(
     text = (
         f"model Test Sigmahat.Plants.{plant} p({changed}); equation {' '.join(equations)} end Test;"
     )
-    # Its explicit solver: the implicit one of rumoca 0.10.2 stops at jumps of a derivative.
+    # The solver is explicit: the implicit solver of rumoca 0.10.2 fails at jumps of a derivative.
     config = rumoca.SimConfig(solver="rk-like", rtol=1e-11, atol=1e-13)
     result = compiled(text).simulate(t=(0.0, duration), dt=T, config=config)
     times = np.asarray(result.time)
-    # Several rows at the time of an event: the last one is after it.
+    # If an event causes several rows at the same time, the last row is after the event.
     t = T * np.arange(round(duration / T) + 1)
     rows = np.searchsorted(times, t + 1e-9) - 1
     assert np.abs(times[rows] - t).max() < 1e-9
@@ -210,11 +210,11 @@ OTHER_VALUES = {
     "spring.step_at": 0.3,
     "spring.step_for": 0.4,
 }
-"""Of parameters that have hardly any effect else."""
+"""Values of parameters that would otherwise have hardly any effect."""
 
 
 def other_values(plant: str) -> dict[str, float]:
-    """Every parameter of the plant other than it is, but for the noise."""
+    """Returns values different from the defaults for all parameters of a plant but its noise."""
     changed = {}
     for number, (name, v) in enumerate(fmu_variables(plant).items()):
         if v.causality == "parameter" and not name.startswith(("noise.", "signal.")):
@@ -224,7 +224,7 @@ def other_values(plant: str) -> dict[str, float]:
 
 
 def slow_inputs(plant: str) -> dict[str, Sine]:
-    """Slow, because the FMU takes them as linear over a step."""
+    """Returns slow sines, because the FMU interpolates its inputs linearly over a step."""
     names = [n for n, v in fmu_variables(plant).items() if v.causality == "input"]
     amplitudes = {"tau_c": 8.0, "tau_1": 0.03, "tau_2": 0.03}
     return {n: Sine(amplitudes.get(n, 0.3), 0.05 + 0.01 * i, 0.3) for i, n in enumerate(names)}
@@ -233,13 +233,13 @@ def slow_inputs(plant: str) -> dict[str, Sine]:
 @pytest.mark.parametrize(("as_it_starts", "duration"), [(True, 5.0), (False, 1.0)])
 @pytest.mark.parametrize("plant", PLANTS)
 def test_every_output_is_that_of_the_fmu(plant: str, as_it_starts: bool, duration: float) -> None:
-    """So the equations that are written twice, for CasADi and in Modelica, are the same."""
+    """The test shows that the equations of a plant in CasADi and in Modelica are equivalent."""
     start = {} if as_it_starts else other_values(plant)
     fmu, model = run(plant, slow_inputs(plant), start, duration)
     for name, values in model.items():
         error = np.abs(values - fmu[name])
         if name.startswith(("q_measured", "theta_measured", "theta_c_measured")):
-            # A position next to the border of two counts may be rounded to either of them.
+            # A position halfway between two counts may be rounded to either count.
             counts = float(fmu.parameters[f"encoder.{name.replace('_measured', '')}"])
             apart = error * counts / (2 * math.pi)
             assert np.mean(apart > 1e-3) < 0.01 and apart.max() < 1.001, name

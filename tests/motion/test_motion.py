@@ -1,4 +1,4 @@
-"""The proposed motion: closed form, other solvers, a C compiler, and joints that nobody tried."""
+"""The motion that `sigmahat motion` proposes: its limits, files, C code and expected accuracy."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -59,17 +59,17 @@ def test_a_joint_moves_as_a_solver_says() -> None:
 
 @pytest.fixture(scope="module")
 def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The files of a motion that begins at 0.5 rad."""
+    """Folder with the files of a motion that begins at 0.5 rad."""
     folder = tmp_path_factory.mktemp("motion")
     more = ["--seconds", "20", "--start", "0.5", "--out", str(folder), "--quiet"]
     corners = Ranges.corners
 
     def most_friction(of: Ranges) -> Iterator[Joint]:
-        """Of all corners those that need the most torque."""
+        """Selects the corner joints with the largest inertia and friction of the motor."""
         most = (of.high.B, of.high.D_theta, of.high.tau_coulomb)
         return (each for each in corners(of) if (each.B, each.D_theta, each.tau_coulomb) == most)
 
-    with pytest.MonkeyPatch.context() as patch:  # two motions; few joints
+    with pytest.MonkeyPatch.context() as patch:  # few motions and joints
         patch.setattr(Ranges, "corners", most_friction)
         spread = "sigmahat.runs.engine.spread"
         patch.setattr(spread, lambda jobs, _: ((i, job()) for i, job in enumerate(jobs)))
@@ -98,7 +98,7 @@ def test_the_csv_begins_and_ends_at_rest_and_keeps_the_limits(rows: np.ndarray) 
     for joint in of_limits(LIMITS).draw(300, np.random.default_rng(4)):
         load = joint.M * acceleration + joint.D_q * velocity
         load += joint.weight * np.sin(joint.angle + position - 0.5)
-        # Below the resonance: the spring has the torque of the load, and little more.
+        # Below the resonance, the torque of the spring hardly exceeds the torque of the load.
         assert np.abs(load).max() / joint.k <= LIMITS.deformation
         torque = joint.B * acceleration + joint.D_theta * velocity + load
         assert np.abs(torque).max() + joint.tau_coulomb <= LIMITS.torque
@@ -142,7 +142,7 @@ def test_what_a_log_says_contains_the_joint() -> None:
 
 def test_a_motion_that_is_larger_promises_more() -> None:
     small, large = (relative_half_width(JOINT, MOTION.scaled(f), SENSORS) for f in (0.2, 1.0))
-    assert 1.96 * SENSORS.torque_gain * 0.99 < large < small  # no motion shows the gain
+    assert 1.96 * SENSORS.torque_gain * 0.99 < large < small  # no motion reveals the gain
 
 
 def test_limits_that_the_weight_takes_are_named() -> None:

@@ -1,4 +1,4 @@
-"""Edits of a configuration: as somebody with an editor would make them."""
+"""Edits of a configuration give the same file as edits by hand in a text editor."""
 
 from pathlib import Path
 
@@ -58,7 +58,7 @@ def test_a_value_is_set_and_comments_stay_if_they_are_still_true() -> None:
 
 
 def setup_of(columns: dict[str, object], folder: Path) -> Setup:
-    """A setup of a log that has been guessed."""
+    """Writes a log and returns a setup with a configuration as `init` would propose it."""
     log = open_log(write_log(columns, folder / "leg.parquet"))  # type: ignore[arg-type]
     setup = Setup(log, folder / "leg.toml")
     setup.guessed(*guessed(log))
@@ -80,7 +80,7 @@ def test_a_unit_brings_the_keys_that_it_needs(tmp_path: Path) -> None:
 
 
 def test_another_column_is_guessed_anew(tmp_path: Path) -> None:
-    """The mark of what is not known goes with the column that it was about."""
+    """GIVEN a new column of a port, THEN marks of unknown values of the old column disappear."""
     setup = setup_of({**knee_log(), "motor_deg": 3.6e4 * knee_log()["t"] % 360}, tmp_path)
     setup.set("ports.theta.column", "motor_deg")
     assert (setup.get("ports.theta.unit"), setup.get("ports.theta.wrap")) == ("deg", 360)
@@ -117,7 +117,7 @@ def test_joints_have_one_file_and_edits_of_their_own(tmp_path: Path) -> None:
 def test_a_file_that_exists_is_overwritten_on_demand_only(tmp_path: Path) -> None:
     setup = setup_of(dict(knee_log()), tmp_path)
     setup.path.write_text("# of somebody else\n")
-    setup.write(overwrite=True)  # nobody was asked
+    setup.write(overwrite=True)  # the user has not confirmed it
     assert setup.path.read_text() == "# of somebody else\n"
     setup.write(overwrite=False)
     assert setup.asks_to_overwrite

@@ -1,4 +1,4 @@
-"""`sigmahat open`: a log set up in the browser, from an empty configuration to the results."""
+"""`sigmahat open` in a browser, from a log without configuration to the results."""
 
 import http.client
 import socket
@@ -16,7 +16,7 @@ from served_page import Hand, served
 
 
 def by_hand(text: str) -> str:
-    """What an editor makes of the file of `init`, in the words of its user."""
+    """Edits the configuration from `init` as a user would in a text editor."""
     for key, value in (("counts_per_turn", "4096"), ("torque_constant", "0.05")):
         text = text.replace(f"{key} = 0 ", f"{key} = {value} ")
     text = text.replace("gear_ratio = 0 ", "gear_ratio = 100 ")
@@ -24,7 +24,7 @@ def by_hand(text: str) -> str:
 
 
 def fill_in(hand: Hand) -> None:
-    """The same in the page, with a slip."""
+    """Makes the same edits on the web page, with one typing error."""
     hand.types("ports.theta.counts_per_turn", "4096")
     hand.types("ports.theta.gear_ratio", "1OO")
     hand.sees("ports.theta.gear_ratio: expected a number, got '1OO'")
@@ -34,7 +34,7 @@ def fill_in(hand: Hand) -> None:
 
 @pytest.mark.slow("two browsers, five checks and curves, an identification")
 def test_from_an_empty_configuration_to_the_results(shell: Shell) -> None:
-    """One window edits, on a desktop; another one, narrow and dark, follows it."""
+    """GIVEN edits in one browser window, THEN a second, narrow and dark window shows them."""
     write_log(knee_log(), Path("knee.csv"))
     with served("knee.csv", folder=Path()) as page:
         with opened(page.address) as first, opened(page.address, 400, dark=True) as second:
@@ -57,15 +57,15 @@ def test_from_an_empty_configuration_to_the_results(shell: Shell) -> None:
             low, high = middle["interval [N.m/rad]"]
             assert low < 1000 < high
             other.sees(f"{middle['sigma [N.m/rad]']:.4g} {low:.4g} to {high:.4g}")
-            assert "phi^11" not in hand.text()  # of orders that nobody has chosen
+            assert "phi^11" not in hand.text()  # `identify` has not chosen such orders
             written = tomlkit.parse(Path("knee.toml").read_text()).unwrap()
-            hand.presses("estimate")  # identifies, too
+            hand.presses("estimate")  # also runs identify
             hand.sees("Results: ")
             assert float(hand.value("motor.B")) == pytest.approx(1e-4, rel=0.01)
             assert Path("sigmahat-results/knee/estimate.png").is_file()
             hand.sees(shell.json("estimate knee.csv")["answer"])
             place = first.run("return document.querySelector('h1').nextElementSibling.offsetTop")
-            assert place < 100  # on the first screen
+            assert place < 100  # visible without scrolling
             for each in (first, second):
                 assert each.complaints() == []
                 asked = {urlsplit(url).netloc for url in each.requests()}
@@ -87,13 +87,13 @@ def test_nothing_is_lost_when_the_log_vanishes_and_at_the_end(tmp_path: Path) ->
         with opened(page.address) as window:
             hand = Hand(window)
             hand.sees("Not checked: modality Residual needs [ports.theta]")
-            log.unlink()  # the page has it open
+            log.unlink()  # the page has opened the log
             hand.chooses("modality", "Model")
             hand.sees("assumptions that no log can verify")
             hand.types("motor.B", "2e-4")
             hand.presses("write")
             hand.sees("exists, and differs from what is shown here")
-            window.driver.get(page.address)  # the page is closed, and opened again
+            window.driver.get(page.address)  # loads the page again
             assert hand.value("motor.B") == "0.0002"
         status, out, err = page.interrupt()
     assert (status, err) == (0, "")

@@ -1,4 +1,4 @@
-"""FilteredRegression on logs of the AwAS: motions it was not made for, odd beginnings, noise."""
+"""FilteredRegression on logs of the AwAS with random motions, moving starts and strong noise."""
 
 import numpy as np
 import pytest
@@ -13,11 +13,11 @@ from recorded_logs import COLUMNS, RETRACTED, T
 from sigmahat.runs.metrics import msrep
 
 MEASURED = tuple(COLUMNS.values())
-SETTINGS = {"method": 2, "rls.n": 3, "motor.D_theta": 1.1e-3}  # 10 % too high
+SETTINGS = {"method": 2, "rls.n": 3, "motor.D_theta": 1.1e-3}  # D_theta is 10 % too high
 
 
 def random_walk(rng: np.random.Generator, t: Array) -> tuple[Array, Array]:
-    """Torques of both motors: random walks that come back, smooth over 20 and 50 ms."""
+    """Torques of both motors: filtered noise with zero mean, smoothed over 20 ms and 50 ms."""
 
     def walk(memory: float, smooth: float) -> Array:
         white = rng.standard_normal(len(t))
@@ -32,7 +32,7 @@ def random_walk(rng: np.random.Generator, t: Array) -> tuple[Array, Array]:
 
 @pytest.mark.slow("ten motions of 15 s are simulated and estimated")
 def test_motions_that_nothing_was_tuned_on(c: Library) -> None:
-    """Seeds fixed beforehand; D_theta wrong by 10 %; after 2 s."""
+    """GIVEN random motions and a D_theta 10 % too high, THEN the error after 2 s is small."""
     t = times(T, 15.0)
     found = []
     for seed in range(9001, 9020, 2):
@@ -50,8 +50,8 @@ def test_motions_that_nothing_was_tuned_on(c: Library) -> None:
 def test_motor_that_turns_at_the_start(
     c: Library, period: float, velocity: float, friction: float
 ) -> None:
-    """In [rad/s]. That costs hardly more than to learn nothing for 12/w after the first row, at any
-    sample period."""
+    """GIVEN a motor that turns at the start [rad/s], THEN the error hardly exceeds the error of an
+    estimator that waits for 12/w after the first row, with any sample period."""
     t = times(period, 1.0)
     torques = np.column_stack([0.3 * np.sin(2 * np.pi * t), 8 * np.sin(0.2 * np.pi * t), 0 * t])
     start = {"initial.theta_dot": velocity, "initial.q_dot": velocity}
@@ -64,10 +64,10 @@ def test_motor_that_turns_at_the_start(
     assert msrep(run["sigma"], found["sigma"]) <= 2 * 100 * (12 / 350)
 
 
-# Slow motion with a noisy torque: noise is not learned as friction, and the interval holds. The
-# bound is the posterior of a regression with the same columns without noise (Cramer and Rao, with
-# priors van Trees): no estimator can know the stiffness better from these data. There is no
-# column of the delay: it contains the derivative of the noise, which is not removed.
+# In slow motions with a noisy torque, the estimator must not mistake noise for friction.
+# The lower bound of the standard deviation is the van Trees bound (Cramer-Rao with priors).
+# The bound comes from a regression with the same columns, but without noise in the columns.
+# The regression has no column for a delay, which would contain the derivative of the noise.
 
 TRUE = ("theta", "q", "theta_c", "tau", "tau_e", "sigma")
 PRIORS = {
@@ -77,7 +77,7 @@ PRIORS = {
 
 
 def bound(c: Library, p: dict[str, float], run: dict[str, Array], at: NDArray[np.intp]) -> Array:
-    """Least standard deviation of the stiffness at samples `at`, after all data [N.m/rad]."""
+    """Lower bound of the standard deviation of sigma at samples `at`, given all data [N.m/rad]."""
     z = np.column_stack([run[name] for name in TRUE[:5]])
     everything = slice(0, len(z))
     inputs = Inputs(p, z, [everything])
@@ -95,7 +95,7 @@ def bound(c: Library, p: dict[str, float], run: dict[str, Array], at: NDArray[np
 
 
 def slow_run(frequency: float, coulomb: float, noise: float, seed: int) -> dict[str, Array]:
-    """40 s of the AwAS, the noise of the torque so many times the noise of the paper."""
+    """Simulates 40 s of the AwAS; `noise` scales the standard deviation of the torque noise."""
     t = times(T, 40.0)
     torques = [0.3 * np.sin(2 * np.pi * frequency * t), 8 * np.sin(0.2 * np.pi * t), 0 * t]
     start = {**RETRACTED, "motor.tau_coulomb": coulomb, "noise.seed": seed}

@@ -1,4 +1,4 @@
-"""The results as files: the table, the series, and the figures with their labels and units."""
+"""Files with results: the table, the time series, and the figures with labels and units."""
 
 import csv
 import re
@@ -19,7 +19,7 @@ from sigmahat.plotting.figure import save
 from sigmahat.runs.metrics import Indices
 
 ROWS = ["MODEL", "SENSOR", "RESIDUAL", "MODEL-measured"]
-# One scenario of each kind, and its figures.
+# One scenario of each kind, and the figures that are drawn for this scenario.
 DRAWN = [
     (scenario, name)
     for scenario in ("table1", "experiment", "single-hardening", "antagonistic")
@@ -49,7 +49,7 @@ def test_series_file_has_units_and_the_exact_values(tmp_path: Path) -> None:
 
 
 def rows_of_table(result: Result) -> dict[str, dict[str, Any]]:
-    """The rows of the table for JSON, which the file has too, by the estimation."""
+    """Returns the rows of the JSON table by the name of the estimation."""
     return {row["estimation"]: row for row in as_dict(result)["table"]}
 
 
@@ -66,7 +66,7 @@ def test_table_of_one_seed() -> None:
         assert row["seeds"] == 1
     assert rows["RESIDUAL"]["MSE of the paper [(N.m/rad)2]"] == 128.1614
     assert rows["RESIDUAL"]["MSREP of the paper [%]"] == 0.58
-    assert rows["MODEL-measured"]["MSREP of the paper [%]"] is None  # the paper has no such row
+    assert rows["MODEL-measured"]["MSREP of the paper [%]"] is None  # the paper has no value for it
 
 
 def test_mean_and_interval_over_seeds() -> None:
@@ -81,7 +81,7 @@ def test_mean_and_interval_over_seeds() -> None:
 
 
 def test_index_that_is_not_defined_is_a_dash_and_null() -> None:
-    """SENSOR is 0 until the joint deforms."""
+    """GIVEN a stiffness from SENSOR that is 0 at first, THEN the index is undefined."""
     result = one_seed("experiment")
     whole = table(result).split("\n\n")[1]
     cells = {row[0]: row[1:] for row in (re.split("  +", x) for x in whole.splitlines())}
@@ -131,7 +131,7 @@ def test_drawn_values_are_those_of_the_recording() -> None:
 
 
 def test_the_curves_of_a_transmission_are_the_spring_and_its_estimate() -> None:
-    """tau_e = 150 phi + 3000 phi^3 N.m is the spring of the scenario."""
+    """GIVEN a scenario with the spring torque tau_e = 150 phi + 3000 phi^3 N.m."""
     recording = one_seed("single-hardening").recording
     estimate = recording.estimators["RESIDUAL"]
     for panel, signal in ((1, "tau_e"), (2, "sigma")):

@@ -1,4 +1,4 @@
-"""The scenarios, and the figures that the paper gives for them."""
+"""Errors of the estimators in all scenarios, compared with the numbers in the paper."""
 
 import math
 
@@ -39,12 +39,12 @@ def test_as_printed(name: str) -> None:
 
 def test_noise_differs_between_seeds_and_nothing_else_does() -> None:
     assert len({each["RESIDUAL"].mse for each in eight_seeds("table1").indices}) == 8
-    # MODEL sees no noise.
+    # MODEL uses no noisy measurement.
     assert len({each["MODEL"].mse for each in eight_seeds("table1").indices}) == 1
 
 
 def test_constant_factors_show_what_the_enhanced_one_is_for() -> None:
-    """Figure 8: one converges too slowly, the other quickly and then goes astray."""
+    """Figure 8 of the paper: a small factor converges too slowly, and a large factor diverges."""
     recording = one_seed("table1").recording
     error = {
         series.parameters["rls.a"]: np.abs(series["sigma"] / recording.plant["sigma"] - 1)
@@ -56,7 +56,7 @@ def test_constant_factors_show_what_the_enhanced_one_is_for() -> None:
     assert small[second].min() > 0.5
     assert large[second].max() < 0.1
     assert large[2000:].max() > 0.5
-    assert np.abs(np.diff(small[1000:])).max() < 0.01  # slow, but undisturbed
+    assert np.abs(np.diff(small[1000:])).max() < 0.01  # slow, but without disturbances
 
 
 @pytest.mark.parametrize("spring", ["linear", "hardening"])

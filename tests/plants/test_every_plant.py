@@ -1,4 +1,4 @@
-"""What the plants share: limits of the torques, sines that move their motors, noise of sensors."""
+"""Features of all plants: limits of torques, sines that drive the motors, noise of sensors."""
 
 import math
 from collections.abc import Iterator
@@ -18,7 +18,7 @@ from sigmahat.runs.engine import run
 
 @pytest.mark.parametrize("name", ["FlexibleJointPlant", "RealJointPlant"])
 def test_the_torques_of_a_large_robot_are_accepted(name: str) -> None:
-    """Jumps of 1e5 N.m on the link and of 1e3 N.m on the axis of the motor."""
+    """GIVEN torque steps of 1e5 N.m on the link and of 1e3 N.m on the axis of the motor."""
     joint = {"link.M": 1e3, "motor.B": 0.02, "motor.gamma": 200.0, "spring.k_1": 1e6}
     friction = {"link.tau_coulomb": 100.0, "motor.tau_coulomb": 1.0}
     with FMI2(name).initialise({**joint, **friction}) as fmu:
@@ -28,7 +28,7 @@ def test_the_torques_of_a_large_robot_are_accepted(name: str) -> None:
             assert fmu.step(k * 1e-3, 1e-3) == OK, fmu.messages
 
 
-# The sines that plants add to the torques of their motors, so that they move without a source
+# A plant can add a sine to the torque of each motor, so that it moves without a signal source.
 
 
 @pytest.mark.parametrize("name", PLANTS)
@@ -60,7 +60,7 @@ def test_a_signal_begins_at_zero_at_any_start_time() -> None:
 
 
 def test_a_late_importer_gets_the_sine_of_the_right_time() -> None:
-    """A communication point may differ a little from the end of the last step."""
+    """GIVEN a communication point that differs a little from the end of the last step."""
     late, h, k = 0.9e-6, 1e-3, 2
     with FMI2("AwasPlant") as fmu:
         values = {"signal.tau.amplitude": 1.0, "signal.tau.frequency": 100.0}
@@ -80,14 +80,14 @@ MASK = (1 << 64) - 1
 
 @cache
 def normals(seed: int, samples: int = SAMPLES, h: float = 1e-3) -> Array:
-    """Noise of unit variance of tau and of tau_e [size: samples x 2], of a plant at rest."""
+    """Noise of tau and tau_e of a plant at rest, with unit variance [size: samples x 2]."""
     start = {"noise.tau_variance": 1.0, "noise.tau_e_variance": 1.0, "noise.seed": seed}
     run = run_awas(h, np.zeros((samples, 3)), start, ["tau_measured", "tau_e_measured"])
     return np.column_stack([run["tau_measured"], run["tau_e_measured"]])
 
 
 def splitmix64(state: int) -> Iterator[int]:
-    """The generator of Steele, Lea and Flood (2014), in Python's integers."""
+    """Random generator splitmix64 of Steele, Lea and Flood (2014), with Python integers."""
     while True:
         state = (state + 0x9E3779B97F4A7C15) & MASK
         z = ((state ^ (state >> 30)) * 0xBF58476D1CE4E5B9) & MASK
@@ -96,7 +96,7 @@ def splitmix64(state: int) -> Iterator[int]:
 
 
 def normal(seed: int, channel: int, sample: int) -> float:
-    """A standard normal by the ratio of uniforms (Kinderman, Monahan 1977)."""
+    """Standard normal random number by the ratio-of-uniforms method (Kinderman, Monahan 1977)."""
     by_channel = next(splitmix64(next(splitmix64(seed & MASK)) + channel))
     bits = splitmix64(next(splitmix64(by_channel + sample)))
     uniforms = (((each >> 12) + 0.5) / 2.0**52 for each in bits)
@@ -114,7 +114,7 @@ def test_noise_is_the_published_method_bit_for_bit(seed: int) -> None:
 
 
 def test_noise_is_standard_normal_white_and_independent_between_channels_and_seeds() -> None:
-    """Bounds of five standard deviations of each estimate."""
+    """Each statistic of the noise may differ from its true value by five standard deviations."""
     five = 5 / math.sqrt(SAMPLES)
     streams = np.column_stack([normals(seed) for seed in (1, 2, 3)])
     assert np.abs(streams.mean(axis=0)).max() < five
@@ -137,14 +137,14 @@ def test_noise_is_drawn_at_multiples_of_its_period_and_held_in_between(
 
 
 def test_noise_in_steps_that_do_not_fit_its_period() -> None:
-    """1/60 s is 16 2/3 periods: every third communication point is on the grid."""
+    """GIVEN steps of 16 2/3 noise periods, THEN only every third step ends at a noise sample."""
     found = normals(1, 1201, 1 / 60)
     last = [50 * k // 3 for k in range(len(found))]
     np.testing.assert_array_equal(found, normals(1)[last])
 
 
 def test_noise_does_not_depend_on_a_last_step_of_a_moment() -> None:
-    """As OMSimulator makes it, where the sum of its steps misses the stop time by rounding."""
+    """GIVEN a tiny last step, like that of OMSimulator if its time has a rounding error."""
     with FMI2("AwasPlant").initialise({"noise.tau_variance": 1.0}) as fmu:
         t = 0.0
         for _ in range(2000):
@@ -155,13 +155,13 @@ def test_noise_does_not_depend_on_a_last_step_of_a_moment() -> None:
         assert t != 2.0
         assert fmu.step(t, 1e-13) == OK
         assert fmu.get("tau_measured") == before
-        # It has not moved the grid either.
+        # The tiny step does not shift the following noise samples.
         assert fmu.step(t + 1e-13, 1e-3) == OK
         assert fmu.get("tau_measured") == normals(1)[2001, 0]
 
 
 def test_a_scenario_draws_noise_at_its_own_sampling_times() -> None:
-    """So that it is white for its estimators, whatever T is."""
+    """GIVEN noise with its own sample period, THEN its samples do not depend on the step size T."""
     table1 = scenario("table1")
     plant = replace(
         table1.plant, start={"noise.tau_variance": 1.0}, inputs={}, record=["tau_measured"]

@@ -1,6 +1,6 @@
-"""The integrator of the plants, against equations that scipy solves, and the encoders.
+"""Tests of the encoders of the plants, and of their integrator in comparison with scipy.
 
-The equations of all plants are compared with those in Modelica: tests/modelica.
+The tests in tests/modelica compare the equations of all plants with the Modelica models.
 """
 
 import math
@@ -25,7 +25,7 @@ AT_REST = np.array([0.0, 0.0, RETRACTED, 0.0, 0.0, 0.0])
 
 def test_table1_is_the_solution_of_the_equations() -> None:
     h = 1e-3
-    # A sinusoid interpolated linearly is smaller by (w h)^2 / 12, but for a ripple of mean zero.
+    # Linear interpolation of a sine reduces its amplitude by (w h)^2 / 12, apart from ripple.
     share = 1 - (0.2 * math.pi * h) ** 2 / 12
     states = solution(
         awas, lambda t: (share * paper_tau(t), share * paper_tau_c(t), 0.0), AT_REST, 15.0
@@ -62,7 +62,7 @@ def test_encoders_round_to_the_nearest_count(counts: float) -> None:
 
 
 def test_a_jump_of_the_torque_is_stepped_over() -> None:
-    """At the edge of the dead zone the damping begins, which is more than all other torques."""
+    """GIVEN a dead zone at whose edge a damping torque begins that exceeds all other torques."""
     h, steps, gap, damping, k = 1e-3, 20, 1e-3, 0.1, 150.0
     M, D_q, B, D, gamma = 0.1, 0.15, 2.3e-5, 1e-3, 50.0
 
@@ -77,11 +77,11 @@ def test_a_jump_of_the_torque_is_stepped_over() -> None:
     found = run_plant(
         "RealJointPlant", ("tau", "tau_ext"), h, np.zeros((steps + 1, 2)), start, names
     )
-    # The link moves alone, and slower, until it has crossed the gap.
+    # The link moves freely with viscous friction until it has crossed the gap.
     at_edge = np.array([gap, 0.0, 1.0 - D_q / M * gap, 0.0])
     t_edge = -M / D_q * math.log(at_edge[2])
     states = solution(engaged, lambda _: (), at_edge, h * steps - t_edge)
-    t = times(h, h * steps)[2:]  # the first row behind the edge
+    t = times(h, h * steps)[2:]  # rows after the edge
     reference = states(t - t_edge).T
     assert (reference[:, 0] - reference[:, 1] > gap).all()
     behind = {name: column[2:] for name, column in found.items()}

@@ -1,4 +1,4 @@
-"""All programs that the bench compares work and compute the same. No time is measured here."""
+"""All programs that the benchmark compares compute the same results; no time is measured."""
 
 import sys
 from pathlib import Path

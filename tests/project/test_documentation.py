@@ -1,4 +1,4 @@
-"""Documentation and icons inside the FMUs."""
+"""Tests of the documentation and the icons inside of the FMUs."""
 
 import re
 import zipfile
@@ -21,7 +21,7 @@ def files(request: pytest.FixtureRequest) -> dict[str, bytes]:
 
 
 def text(element: Any) -> str:
-    """The text that a reader sees, without the items of an enumeration."""
+    """Returns the visible text of an HTML element, without the items of an enumeration."""
     return "".join(element.xpath(".//text()[not(ancestor::*[@class='items'])]"))
 
 
@@ -57,7 +57,7 @@ def test_the_tables_list_the_variables_of_the_model_description(files: dict[str,
 
 
 def test_every_name_in_the_text_is_a_variable(files: dict[str, bytes]) -> None:
-    """Checks names in `code` outside of the tables, because that text is written by hand."""
+    """Checks the names in `code` elements outside of tables, as they are written by hand."""
     page = etree.fromstring(files[INDEX])
     root = etree.fromstring(files["modelDescription.xml"])
     names = {v.get("name") for v in root.iterfind("ModelVariables/*")}
@@ -74,7 +74,7 @@ def test_every_name_in_the_text_is_a_variable(files: dict[str, bytes]) -> None:
 
 
 def test_the_page_loads_nothing_from_outside_of_the_fmu(files: dict[str, bytes]) -> None:
-    """It can be opened offline: it refers only to files of the FMU, and to anchors that exist."""
+    """The documentation works offline: it only refers to files of the FMU and to valid anchors."""
     for name in (INDEX, ICON):
         content = files[name].decode()
         root = etree.fromstring(files[name])

@@ -39,7 +39,7 @@ def test_own_log(tmp_path: Path) -> None:
 def test_own_plant(tmp_path: Path) -> None:
     printed = run(sys.executable, EXAMPLES / "own_plant.py", cwd=tmp_path)
     found = re.search(r"after 1 s, MSREP (\S+) %", printed)
-    assert found and float(found[1]) < 0.01  # root mean square error below 1 %
+    assert found and float(found[1]) < 0.01  # the RMS error is below 1 %
 
     fmu = tmp_path / "PendulumPlant.fmu"
     assert fmpy.validation.validate_fmu(str(fmu)) == []
@@ -53,7 +53,7 @@ def test_stiffness_control(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
     example.main(tmp_path)
     assert (tmp_path / "stiffness_control.png").stat().st_size > 0
     t, wanted, true, _, _ = example.run(True).T
-    for last, stiffness in ((7, 200.0), (14, 320.0), (20, 150.0)):  # the last second of each step
+    for last, stiffness in ((7, 200.0), (14, 320.0), (20, 150.0)):  # last second of each step
         settled = (t >= last - 1) & (t < last)
         assert set(wanted[settled]) == {stiffness}
         np.testing.assert_allclose(true[settled], stiffness, rtol=0.015)
@@ -67,7 +67,7 @@ def test_stiffness_control(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
 
 def test_notebook(tmp_path: Path) -> None:
     notebook = nbformat.read(EXAMPLES / "stiffness.ipynb", as_version=4)  # type: ignore[no-untyped-call]
-    for cell in notebook.cells:  # cells are stored without their outputs
+    for cell in notebook.cells:  # the notebook has no stored outputs
         assert not cell.get("outputs") and cell.get("execution_count") is None
     resources = {"metadata": {"path": str(tmp_path)}}
     nbclient.NotebookClient(notebook, resources=resources).execute()
@@ -80,4 +80,4 @@ def test_notebook(tmp_path: Path) -> None:
     own = once.estimators["RESIDUAL"]["sigma"]
     found = sigmahat.indices(once.t, once.plant["sigma"], own)
     assert exact == float(f"{found.msrep_settled:.3g}")
-    assert wrong > 25  # root mean square error above 50 %: as the notebook says, far above 5 %
+    assert wrong > 25  # the RMS error is far above 5 %, as the notebook says

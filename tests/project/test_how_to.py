@@ -1,4 +1,4 @@
-"""The how-to pages: their code works."""
+"""The code on the how-to pages works."""
 
 import os
 import re
@@ -23,7 +23,7 @@ from sigmahat.runs.scenario import T
 
 REPOSITORY = Path(__file__).parents[2]
 PAGES = REPOSITORY / "docs" / "how-to"
-SIGNALS = {  # section VI.B
+SIGNALS = {  # section VI.B of the paper
     **{"signal.tau.amplitude": 0.3, "signal.tau.frequency": 0.1},
     **{"signal.tau_c.amplitude": 8.0, "signal.tau_c.frequency": 0.1},
 }
@@ -35,7 +35,7 @@ def blocks(page: str, language: str) -> Iterator[str]:
 
 
 def executed(page: str) -> dict[str, Any]:
-    """Variables of the Python of a page after all of its blocks ran in their order."""
+    """Runs all Python blocks of a page in their order, and returns the resulting variables."""
     names: dict[str, Any] = {}
     for code in blocks(page, "python"):
         exec(compile(code, page, "exec"), names)
@@ -46,7 +46,7 @@ def executed(page: str) -> dict[str, Any]:
 def test_the_commands_of_the_page_on_c_masters_work(tmp_path: Path) -> None:
     (commands,) = blocks("c-master.md", "sh")
     (tmp_path / "examples").symlink_to(REPOSITORY / "examples")
-    # The python3 that runs this test, which has FMPy.
+    # The python3 of this test has FMPy.
     environment = {
         "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}",
         "FMU": str(sigmahat.fmu("StiffnessEstimator")),
@@ -57,7 +57,7 @@ def test_the_commands_of_the_page_on_c_masters_work(tmp_path: Path) -> None:
 
 
 def test_the_c_to_copy_estimates_a_stiffness(tmp_path: Path, build: Path) -> None:
-    """Compiled with the amalgamation; a motor moves against a spring of 400 N.m/rad."""
+    """GIVEN the C code of the page, compiled with the amalgamation, and a spring of 400 N.m/rad."""
     (code,) = blocks("../controller.md", "c")
     main = """
     #include <math.h>
@@ -96,7 +96,7 @@ def page() -> dict[str, Any]:
 def test_the_program_of_the_page_on_fmus_works_with_both_versions_of_fmi(
     build: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """As it is, and with the line that the page on FMI 3.0 shows."""
+    """GIVEN the code of the page, unchanged and with the line from the page about FMI 3.0."""
     (tmp_path / "build").symlink_to(build.resolve())
     monkeypatch.chdir(tmp_path)
     (line,) = re.findall(r"`(fmu = .*?)`", (PAGES / "fmi3.md").read_text(encoding="utf-8"))
@@ -108,14 +108,14 @@ def test_the_program_of_the_page_on_fmus_works_with_both_versions_of_fmi(
         names: dict[str, Any] = {}
         exec(code, names)
         stiffness = names["result"]["sigma"][-1]
-        # The stiffness of the joint from which its log was computed.
+        # The log comes from a simulated joint with a stiffness of 1000 N.m/rad.
         assert stiffness == pytest.approx(1000.0, abs=1.0)
         assert f"It prints {stiffness:.1f}:" in text
 
 
 def test_the_code_on_the_page_of_python_works() -> None:
     names = executed("python.md")
-    # The joint of the first block has 1000 N.m/rad; the residual lags slightly behind.
+    # The joint of the first code block has a stiffness of 1000 N.m/rad.
     assert names["found"]["sigma"][-1] == pytest.approx(1000, rel=1e-3)
     assert names["now"]["sigma"] == names["found"]["sigma"][-1]
     np.testing.assert_allclose(names["both"]["sigma"][:, -1], 1000, rtol=1e-3)
@@ -137,7 +137,7 @@ def test_the_commands_and_the_program_of_the_page_on_joints_work(shell: Shell) -
 
 
 def test_a_copy_without_enumerations_is_the_same_fmu(page: dict[str, Any], tmp_path: Path) -> None:
-    """The function of the page on importers."""
+    """Tests the function on the page about importers."""
     source, copy = sigmahat.fmu("StiffnessEstimator"), tmp_path / "copy.fmu"
     executed("importers.md")["without_enumerations"](source, copy)
     found = {
@@ -156,7 +156,7 @@ def test_a_copy_without_enumerations_is_the_same_fmu(page: dict[str, Any], tmp_p
 
 
 def test_fmpy_page_gives_the_results_of_other_loops(page: dict[str, Any]) -> None:
-    """The plant in the loop of the package, the estimator without an FMU."""
+    """GIVEN a simulation of the plant by sigmahat, and an estimator without an FMU."""
     inputs = ("tau", "tau_c")
     torques = np.column_stack([page["torques"][name] for name in inputs])
     plant = run_plant("AwasPlant", inputs, T, torques, record=["sigma"], held=True)
@@ -172,7 +172,7 @@ def test_fmpy_page_tunable_takes_effect_at_the_next_tick(page: dict[str, Any]) -
     before = page["tuned"]["time"] < 1.5 + T / 2
     same = page["tuned"]["sigma"] == page["estimate"]["sigma"]
     assert same[before].all() and not same[~before].any()
-    # The estimate continues from its value: one tick changes it little.
+    # After a change of a parameter, the next tick changes the estimate only a little.
     first = np.flatnonzero(~before)[0]
     assert page["tuned"]["sigma"][first] == pytest.approx(
         page["tuned"]["sigma"][first - 1], rel=1e-3
@@ -182,11 +182,11 @@ def test_fmpy_page_tunable_takes_effect_at_the_next_tick(page: dict[str, Any]) -
 def test_fmpy_passes_zeros_to_the_first_tick_of_the_system_and_is_else_exact(
     page: dict[str, Any],
 ) -> None:
-    """The plant in the loop of the package, and the estimator without an FMU, are identical."""
+    """The page gives exactly the results of sigmahat with a plant FMU and no estimator FMU."""
     system = page["system"]
     still, record = np.zeros((len(system), 1)), ("sigma", *page["measured"].values())
     plant = run_plant("AwasPlant", ["tau"], T, still, SIGNALS, record, t=system["time"])
-    # FMPy records the outputs of the plant after the step with the time of its begin.
+    # FMPy records the outputs of the plant after a step with the start time of this step.
     np.testing.assert_array_equal(system["plant.sigma"][:-1], plant["sigma"][1:])
     measured = {to: np.append(0.0, plant[of][1:]) for to, of in page["measured"].items()}
     ticks = sigmahat.Estimator({}).run(**measured)["sigma"]
@@ -200,7 +200,7 @@ def test_the_system_as_it_is_gives_table_1(page: dict[str, Any]) -> None:
     recording = simulate(table1.plant, estimators, T, steps)
     plant, estimate = recording.plant["sigma"], recording.estimators["RESIDUAL"]["sigma"]
     np.testing.assert_allclose(page["system"]["plant.sigma"][:steps], plant[1:], rtol=1e-10)
-    # What is left after a second is the first tick, whose inputs FMPy sets to 0.
+    # A small difference remains after 1 s, because FMPy sets the inputs of the first tick to 0.
     settled = slice(round(1.0 / T) + 1, steps)
     found = page["system"]["estimator.sigma"]
     np.testing.assert_allclose(found[settled], estimate[settled], rtol=1e-6)

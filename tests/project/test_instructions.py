@@ -1,4 +1,4 @@
-"""Speed without a clock: the fast parts need as many instructions as the table says."""
+"""Speed in processor instructions: time-critical functions need as many as the table allows."""
 
 import os
 import platform
@@ -16,24 +16,24 @@ from controllers import run
 from gate import need
 
 TABLE = Path(__file__).parent / "instructions.toml"
-FLAGS = ("-target", "x86_64-linux-musl", "-static", "-O3")  # the C library comes with the compiler
-MORE = 0.02  # so much more is a loss
-STEPS = 600  # of instructions.c
+FLAGS = ("-target", "x86_64-linux-musl", "-static", "-O3")  # static C library
+MORE = 0.02  # largest allowed increase
+STEPS = 600  # steps of instructions.c
 PAPER2011, FILTERED_REGRESSION = "1", "2"
-ROW = r"^ *([\d,]+) \(.*?\) +\S+:(\w+)"  # of callgrind_annotate: instructions and function
+ROW = r"^ *([\d,]+) \(.*?\) +\S+:(\w+)"  # instructions and function in callgrind_annotate
 
 
 def counted(program: Path, method: str) -> Mapping[str, float]:
-    """Instructions per step in each function, and in all that it calls."""
+    """Returns the instructions per step of each function, including the functions it calls."""
     profile = program.with_name("profile")
     valgrind = need("valgrind")
     run(valgrind, "--tool=callgrind", f"--callgrind-out-file={profile}", program, method)
     annotate = Path(valgrind).with_name("callgrind_annotate")
     options = ["--inclusive=yes", "--auto=no", "--threshold=100"]
-    # In another folder than that of the sources, which it would list under two names.
+    # The working folder contains no sources, because callgrind_annotate would list these twice.
     listed = run(annotate, *options, profile, cwd=program.parent)
     found: defaultdict[str, float] = defaultdict(float)
-    # A function has a row for its own file, and one for each header of its inline functions.
+    # A function has a row for its source file and one for each header with inline functions.
     for total, function in re.findall(ROW, listed, re.M):
         found[function] += int(total.replace(",", "")) / STEPS
     return found

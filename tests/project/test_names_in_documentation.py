@@ -1,4 +1,4 @@
-"""What the documentation names is there: files, functions. The build of the site checks links."""
+"""Files and functions that the documentation names exist. The build of the site checks links."""
 
 import re
 from functools import cache
@@ -20,7 +20,7 @@ NOT_OURS = re.compile(
     r"NAME|Name|LOG|^build/|modelDescription\.xml|buildDescription\.xml|^(rls|fmpy/simulation|joint|"
     r"arm|arm-elbow|motion|knee\.draft|desr)\.\w+$"
 )
-"""Places of names, files of FMUs and of users, and the parameter rls.c."""
+"""Names that are no files of the repository: placeholders, files of users, and rls.c."""
 
 
 @cache

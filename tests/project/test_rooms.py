@@ -1,4 +1,4 @@
-"""The rooms of the Python package: imports run one way, and not through many of them."""
+"""Imports between the subpackages of sigmahat form no cycle and no long chain."""
 
 import ast
 from collections.abc import Iterator, Mapping
@@ -9,13 +9,13 @@ import pytest
 
 PACKAGE = Path(__file__).parents[2] / "harness" / "sigmahat"
 LONGEST = 9
-"""Rooms from the command line to the last one."""
+"""Largest number of subpackages in a chain of imports, which begins at the command line."""
 
 Graph = Mapping[str, set[str]]
 
 
 def modules() -> dict[str, Path]:
-    """Files by name; not the front door, which names what is public wherever it is."""
+    """Files of all modules by name, without __init__.py of sigmahat, which imports public names."""
     files = (path for path in PACKAGE.rglob("*.py") if path != PACKAGE / "__init__.py")
     parts = {path: path.relative_to(PACKAGE.parent).with_suffix("").parts for path in files}
     return {".".join(names).removesuffix(".__init__"): path for path, names in parts.items()}
@@ -37,7 +37,7 @@ def graph() -> Graph:
 
 
 def room(module: str) -> str:
-    """The folder in the package, or the module itself if it is in none."""
+    """Returns the subpackage of a module, or the name of a module at the top level."""
     return module.split(".")[1]
 
 
@@ -49,7 +49,7 @@ def rooms(graph: Graph) -> Graph:
 
 
 def longest(graph: Graph) -> list[str]:
-    """The longest chain. Raises CycleError, which names a circle, if there is one."""
+    """Returns the longest chain of imports. Raises CycleError if the imports form a cycle."""
     chains: dict[str, list[str]] = {}
     for name in TopologicalSorter(graph).static_order():
         below = max((chains[other] for other in graph[name]), key=len, default=[])

@@ -1,7 +1,7 @@
-"""The documentation as a site: the API, and how it looks in a browser.
+"""Tests of the HTML documentation: its API reference, and its appearance in a browser.
 
-The build has checked that every page is in the navigation, and that Sphinx has nothing to warn of,
-such as a link that leads nowhere.
+The build of the documentation fails if Sphinx reports a warning. Examples are a page outside of the
+navigation and a broken link.
 """
 
 import re
@@ -26,11 +26,11 @@ SEEN = [
     "how-to-log",
     "genindex",
 ]
-"""Pages to look at: tables, formulas, pictures, code, signatures."""
+"""Pages that the tests open in a browser, with tables, formulas, pictures and code."""
 
 
 def pages(site: Path) -> list[Path]:
-    """Every page; among the files of the theme there is a template, which is none."""
+    """Returns all pages of the site, without an HTML template among the files of the theme."""
     found = [page for page in site.rglob("*.html") if "_static" not in page.parts]
     assert len(found) > 20
     return found

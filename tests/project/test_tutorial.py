@@ -1,4 +1,4 @@
-"""The tutorial: its log can be made again, its commands work, and it tells what comes out."""
+"""The log of the tutorial is reproducible, and its commands give the results on the page."""
 
 import re
 import runpy
@@ -20,7 +20,7 @@ pytestmark = pytest.mark.slow("the commands of the page run on a log of 20 s")
 
 @pytest.fixture(scope="module")
 def printed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
-    """Results of the commands of the page, by name, in a new folder."""
+    """Runs the commands of the tutorial in a new folder, and returns their results by name."""
     folder = tmp_path_factory.mktemp("tutorial")
     shutil.copy(FILES / "knee.csv", folder)
     init, identify, estimate, report = re.findall(r"^sigmahat (.*)$", PAGE, re.MULTILINE)
@@ -38,7 +38,7 @@ def printed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
 
 @pytest.fixture(scope="module")
 def recording(tmp_path_factory: pytest.TempPathFactory) -> Any:
-    """The program that made the log, the log that it makes, and the recording of the joint."""
+    """The program that simulates the log, the log that it writes, and the recorded joint."""
     program = runpy.run_path(str(FILES / "record.py"))
     log = tmp_path_factory.mktemp("again") / "knee.csv"
     return program["JOINT"], log, program["record"](log)

@@ -1,4 +1,4 @@
-"""The released FMUs: size, identical bytes from every build, their binaries, what checkers find."""
+"""Tests of the released FMUs: size, reproducible bytes, binaries, and results of FMU checkers."""
 
 import os
 import re
@@ -47,7 +47,7 @@ def test_the_released_binary_gives_the_results_of_the_host_build(name: str, rele
     run.assert_same(run.simulate(sigmahat.fmu(name)))
 
 
-# The release compiles all of them from their sources, too; this is another way to do it.
+# FMPy compiles the sources of an FMU in another way than the release does.
 @pytest.mark.parametrize("name", ["StiffnessEstimator", "AwasPlant_FMI3"])
 def test_fmpy_rebuilds_it_from_its_sources(name: str, released: Path, tmp_path: Path) -> None:
     run = run_of(released / f"{name}.fmu")
@@ -56,7 +56,7 @@ def test_fmpy_rebuilds_it_from_its_sources(name: str, released: Path, tmp_path: 
     contents = {f.relative_to(folder).as_posix(): f for f in files}
     rebuilt = tmp_path / f"{name}.fmu"
     archive.write(rebuilt, {n: f for n, f in contents.items() if not n.startswith("binaries/")})
-    # With the build tool of the environment, because make may be missing.
+    # The build tool is the Ninja of the environment, because make may be missing.
     environment = {
         "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}",
         "CMAKE_GENERATOR": "Ninja",
@@ -91,26 +91,26 @@ def test_vdmcheck2_finds_no_error(name: str, released: Path, build: Path, tmp_pa
         missing("VDMCheck2", "mvn -f tests/checkers/pom.xml dependency:copy-dependencies")
     for jar in jars.glob("*.jar"):
         shutil.copy(jar, tmp_path)
-    for jar_with_files in ("static-model.jar", "vdmcheck2.jar"):  # it runs from their folder
+    for jar_with_files in ("static-model.jar", "vdmcheck2.jar"):  # VDMCheck2 needs their files
         with ZipFile(jars / jar_with_files) as archive:
             archive.extractall(tmp_path)
     fmu = released.resolve() / f"{name}.fmu"
     text = controllers.run(need("java"), "-jar", "vdmcheck2.jar", fmu, cwd=tmp_path)
-    # VDMCheck2 names files of FMI 3 that are missing; an FMU of FMI 2.0 need not have them.
+    # VDMCheck2 reports missing files that only FMI 3 requires, and not FMI 2.0.
     lines = [line for line in text.splitlines() if not line.startswith("FMU has no ")]
     assert lines[-1] == "No errors found."
     assert all(line == "Checking modelDescription.xml" for line in lines[:-1]), text
 
 
-# Exported functions and required libraries of the binaries, also of those in the wheels
+# Exported functions and required libraries of the binaries in FMUs and wheels
 
-BY_THE_LINKER = {"__mh_dylib_header", "___dso_handle"}  # symbols of a library of macOS
+BY_THE_LINKER = {"__mh_dylib_header", "___dso_handle"}  # from the linker of macOS
 WHEEL = f"python/sigmahat-{sigmahat.__version__}-py3-none-{{}}.whl"
 ARCHITECTURES = ("x86_64", "aarch64")
 
 
 def places(system: str, folder: str, tag: str, *architectures: str) -> list[tuple[str, str]]:
-    """Archives with a binary for a system, and the begin of its name."""
+    """Returns all archives with a binary for a system, and the first part of the binary's name."""
     twins = [(f"{n}.fmu", f"binaries/{a}-{system}/") for n in TWINS for a in architectures]
     wheel = (WHEEL.format(tag), "sigmahat/fmus/sigmahat_native")
     return [*((f"{n}.fmu", f"binaries/{folder}/") for n in FMUS), *twins, wheel]
@@ -122,7 +122,7 @@ MACOS = places("darwin", "darwin64", "macosx_11_0_x86_64", *ARCHITECTURES)
 
 
 def functions(archive: str) -> set[str]:
-    """All functions that the standard, or the header of the library in a wheel, declares."""
+    """Returns all functions that the FMI standard or the header of the C library declares."""
     if archive.endswith(".whl"):
         headers = (Path(__file__).parents[2] / "harness" / "native").glob("*.h")
         text = "".join(header.read_text() for header in headers)

@@ -1,4 +1,4 @@
-"""The released FMUs give the trajectories of FMPy in other importers and on Windows, too."""
+"""Other importers and Windows give the same trajectories of the released FMUs as FMPy."""
 
 import os
 import subprocess
@@ -19,7 +19,7 @@ run_of = cache(Run)
 
 @pytest.fixture(params=["AntagonisticStiffnessEstimator", "RealJointPlant"])
 def run(request: pytest.FixtureRequest, released: Path) -> Run:
-    """The run in FMPy of the estimator and the plant with the most variables."""
+    """A simulation in FMPy of the estimator or the plant that has the most variables."""
     return run_of(released / f"{request.param}.fmu")
 
 
@@ -48,25 +48,25 @@ def test_libcosim_gives_the_same_trajectories(run: Run, capfd: pytest.CaptureFix
     text = capfd.readouterr()
     own_limit = "FMI 2.0 Enumeration variable type not supported"
     assert [line for line in (text.out + text.err).splitlines() if own_limit not in line] == []
-    # libcosim does not read the values before the first step from the FMU.
+    # libcosim does not read the initial values of the outputs from the FMU.
     run.assert_same(np.array([run.trajectory[0], *rows[1:]]))
 
 
 def assert_same_in(
     fmu: Path, target: str, binary: str, emulator: list[str], build: Path, folder: Path
 ) -> None:
-    """Steps an FMU, unpacked into a folder, with the master of drivers/, in an emulator.
+    """Simulates an FMU in an emulator with drivers/master.c, which loads the unpacked FMU.
 
-    target  of the cross compiler
-    binary  of the FMU
+    target  target platform of the cross compiler
+    binary  file of the binary in the FMU
     """
     run, program = run_of(fmu), folder / "binaries" / Path(binary).with_name("master.exe")
     fmpy.extract(str(fmu), unzipdir=str(folder))
-    # With -s and in a folder outside of the sources as the binaries of the release: so what the
-    # compiler made of its C library for them is used again, which takes minutes to make.
+    # The compiler needs minutes to build its C library, and then stores the result in a cache.
+    # The test uses this cache, as it compiles with -s and outside of the sources like the release.
     options = ["-std=c99", "-O2", "-s", f"-DSH_FMI={run.description.fmiVersion[0]}"]
     options += [f"-I{HEADERS}", f"-I{FMU_SOURCES}", "-o", str(program), str(DRIVERS / "master.c")]
-    link = [f"binaries/{binary}", "-Wl,-rpath,$ORIGIN"]  # Windows searches in the folder itself
+    link = [f"binaries/{binary}", "-Wl,-rpath,$ORIGIN"]  # Windows searches the folder
     compile_files(target, [*options, *link], build / "cross-compiler", folder)
     done = subprocess.run(
         [
@@ -78,15 +78,15 @@ def assert_same_in(
         cwd=folder,
         env={
             **os.environ,
-            "WINEPREFIX": str((build / "wine").resolve()),  # a separate one, not that of the user
-            "WINEDLLOVERRIDES": "mscoree,mshtml=",  # prevents an offer to download them
+            "WINEPREFIX": str((build / "wine").resolve()),  # not the folder of the user
+            "WINEDLLOVERRIDES": "mscoree,mshtml=",  # prevents a question to download these
             "WINEDEBUG": "-all",
         },
         capture_output=True,
         text=True,
     )
     assert done.returncode == 0, done.stderr
-    # Wine's own processes write into the same stream, also when its server ends before them.
+    # The processes of Wine also write messages to the same stream, for example at their end.
     own = ("wine: ", "wine client error:")
     assert [line for line in done.stderr.splitlines() if not line.startswith(own)] == []
     run.assert_same(np.array([line.split(",") for line in done.stdout.split()], np.float64))
@@ -103,7 +103,7 @@ def assert_same_in(
 def test_the_windows_binary_gives_the_same_trajectories(
     name: str, binary: str, released: Path, build: Path, tmp_path: Path
 ) -> None:
-    wine = [need("wine64", folder="/usr/lib/wine")]  # where Debian has it
+    wine = [need("wine64", folder="/usr/lib/wine")]  # folder on Debian
     fmu = released / f"{name}.fmu"
     assert_same_in(fmu, "x86_64-windows-gnu", binary, wine, build, tmp_path)
 

@@ -1,6 +1,6 @@
-"""What pip makes of a fresh clone, in an environment with nothing else, used from another folder.
+"""pip installs a fresh clone into an empty environment, which is used from another folder.
 
-Nothing of this tree is on a path of what runs here.
+No search path of the tested programs contains a folder of this repository.
 """
 
 import os
@@ -24,9 +24,9 @@ pytestmark = pytest.mark.slow(
 
 
 def outside() -> dict[str, str]:
-    """Variables of a shell that knows nothing of this tree, nor of the environment of the tests.
+    """Returns the variables of a shell without paths of this repository and of its environment.
 
-    pip does not compile modules of which most are never imported here.
+    pip does not compile modules, because the tests never import most of the modules.
     """
     own = Path(sys.executable).parent
     path = [p for p in os.environ["PATH"].split(os.pathsep) if Path(p) != own]
@@ -36,7 +36,7 @@ def outside() -> dict[str, str]:
 
 @pytest.fixture(scope="module")
 def clone(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Fresh clone of what is committed."""
+    """Folder with a fresh clone of the last commit."""
     folder = tmp_path_factory.mktemp("clone") / "sigmahat"
     controllers.run(need("git"), "clone", "-q", REPOSITORY, folder)
     return folder
@@ -44,7 +44,7 @@ def clone(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def programs(clone: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Programs of an environment into which pip installed the clone."""
+    """Folder with the programs of an environment into which pip has installed the clone."""
     folder = tmp_path_factory.mktemp("installed")
     subprocess.run([sys.executable, "-m", "venv", folder], env=outside(), check=True)
     programs = folder / Path(sys.executable).parent.name
@@ -59,7 +59,7 @@ def programs(clone: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def run(program: Path, *arguments: str, cwd: Path) -> str:
-    """What a program prints with nothing else on the path, and no error."""
+    """Runs a program without other programs on the path, and returns its output."""
     environment = {**outside(), "PATH": str(program.parent)}
     command = [str(program), *arguments]
     done = subprocess.run(command, cwd=cwd, env=environment, capture_output=True, text=True)
@@ -83,7 +83,7 @@ def test_the_package_is_for_the_platform_and_any_python(programs: Path) -> None:
 
 
 def test_source_distribution_holds_what_git_holds(clone: Path, tmp_path: Path) -> None:
-    """So it builds if the clone does."""
+    """The test ensures that the source distribution builds if the clone builds."""
     code = "import sys; from scikit_build_core.build import build_sdist; build_sdist(sys.argv[1])"
     controllers.run(sys.executable, "-c", code, tmp_path, cwd=clone)
     (path,) = tmp_path.iterdir()

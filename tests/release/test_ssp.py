@@ -1,6 +1,6 @@
-"""The system sigmahat-awas.ssp: validity, its FMUs, and its simulation in libcosim.
+"""Tests of the system sigmahat-awas.ssp: validity, FMUs, and simulation in libcosim.
 
-tests/project/test_how_to.py has that in FMPy.
+The file tests/project/test_how_to.py simulates the same system in FMPy.
 """
 
 import zipfile
@@ -19,12 +19,12 @@ from sigmahat.runs.scenario import T
 
 TABLE1 = scenario("table1")
 RESIDUAL = TABLE1.estimators["RESIDUAL"]
-STEPS = 1500  # half of the first motion to one side
+STEPS = 1500  # a part of the first motion
 
 
 @pytest.fixture(scope="module")
 def ssp() -> Path:
-    """The system of the build for development; the released one differs in its binaries."""
+    """The system in the build tree; the released system only differs in its binaries."""
     return sigmahat.fmu("StiffnessEstimator").with_name("sigmahat-awas.ssp")
 
 

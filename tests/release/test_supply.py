@@ -1,4 +1,4 @@
-"""Wheels and bill of materials of the release; archives are the same wherever they are packed."""
+"""Wheels and bill of materials of the release. Archives do not depend on the build folder."""
 
 import hashlib
 import json
@@ -63,7 +63,7 @@ def test_the_bill_says_what_is_in_a_file(contents: dict[str, Any]) -> None:
 
 
 def older(folder: Path, copy: Path) -> Path:
-    """A copy of a folder whose files are of another time."""
+    """Copies a folder and gives all files an older time of modification."""
     shutil.copytree(folder, copy)
     for file in copy.rglob("*"):
         os.utime(file, (OLD, OLD))
@@ -95,14 +95,14 @@ def test_the_wheels_made_elsewhere_are_the_same(
     def compiled(
         _sources: object, _includes: object, stem: Path, platform: str, _cache: object
     ) -> Path:
-        """The library of the released wheel, instead of one that is compiled again."""
+        """Returns the library from the released wheel instead of compiling the library again."""
         tag = distribution.TAGS[platform]
         wheel = next((released / "python").glob(f"*{tag}.whl"))
         with ZipFile(wheel) as opened:
             (name,) = (n for n in opened.namelist() if "/sigmahat_native." in n)
             library = stem.with_name(Path(name).name)
             library.write_bytes(opened.read(name))
-        library.chmod(0o755)  # as a compiler writes it
+        library.chmod(0o755)  # like a compiled library
         return library
 
     monkeypatch.setattr(distribution, "compile_shared", compiled)
@@ -112,7 +112,7 @@ def test_the_wheels_made_elsewhere_are_the_same(
         assert (tmp_path / "python" / file.name).read_bytes() == file.read_bytes(), file.name
 
 
-# The wheels and the source distribution, read from the files
+# Contents of the wheels and of the source distribution
 
 
 def wheel(released: Path, tag: str) -> Path:
@@ -143,7 +143,7 @@ def test_a_wheel_contains_the_released_fmus_and_its_library(tag: str, released: 
 
 @each_platform
 def test_the_record_of_a_wheel_is_right(tag: str, released: Path, tmp_path: Path) -> None:
-    """`wheel unpack` compares every file with its hash."""
+    """The command `wheel unpack` compares the hash of every file."""
     run(sys.executable, "-m", "wheel", "unpack", "-d", tmp_path, wheel(released, tag))
     (kind,) = tmp_path.glob("*/*.dist-info/WHEEL")
     text = kind.read_text()
@@ -168,7 +168,7 @@ print(json.dumps([sigmahat.__file__, run.estimators["RESIDUAL"]["sigma"].tolist(
 """
     found = []
     packages = sysconfig.get_path("purelib")
-    # Without "site" the package of this tree is on no path.
+    # The option -S disables the module site, so that no path leads to the package of this tree.
     for command in (["-S", "-c", program, tmp_path, packages], ["-c", program]):
         found.append(json.loads(run(sys.executable, *command)))
     assert Path(found[0][0]).is_relative_to(tmp_path)

@@ -1,15 +1,15 @@
-/* Runs the estimator over a log, on the host or on the controller.
+/* Runs the estimator over a log, on the host or on a microcontroller.
  *
  * replay LOG OUT CONFIGURATION
  *
- * LOG holds the five measurements of each tick, doubles in the byte order of the machine. OUT gets the
- * sh_estimate of each tick. CONFIGURATION is one letter, see configure().
+ * LOG is a file with the five measurements of each tick as doubles in the byte order of the machine. The program writes
+ * the sh_estimate of each tick to the file OUT. CONFIGURATION is a letter from the function configure().
  */
 #include <stdio.h>
 
 #include "sigmahat.h"
 
-/* Between them they use every block and every kind of it. Returns 0 for an unknown one. */
+/* Sets one of several configurations, which together use all variants of all blocks. Returns 0 for an unknown letter. */
 static int configure(sh_parameters *p, char configuration)
 {
     sh_parameters_default(p);
@@ -31,7 +31,7 @@ static int configure(sh_parameters *p, char configuration)
     case 'e':
         p->filter.kind = SH_FILTER_FINITE_DIFFERENCE;
         p->rls.kind = SH_RLS_STANDARD;
-        p->rls.P_0 = 1; /* the same ridge as in Table I: c P_0 */
+        p->rls.P_0 = 1; /* gives the same ridge as in Table I */
         break;
     case 'f':
         p->filter.weighting = SH_WEIGHTING_AS_PRINTED;

@@ -1,4 +1,4 @@
-"""Reports: one file that shows what the results are, in a browser without a network."""
+"""A report is one HTML file that shows results in a browser without a network."""
 
 import csv
 import html
@@ -27,14 +27,14 @@ const before = window.before ?? [];
 window.before = picture;
 return before.length === picture.length && picture.some((x, i) => x !== before[i]);
 """
-"""Whether the picture of a plot has changed since this was last asked."""
+"""Script that returns true if the image of a plot has changed since its last call."""
 SHOW = """
 const [plot, shown, done] = arguments;
 for (const box of document.querySelectorAll(`[data-trace^="trace-${plot}-"]`))
   if (box.checked !== shown.includes(box.dataset.trace)) box.click();
 requestAnimationFrame(() => setTimeout(done, 50));
 """
-"""Switches all traces of a plot off but these."""
+"""Script that shows the given traces of a plot and hides all other traces."""
 TRACES = "return [...document.querySelectorAll('.plots input')].map(box => box.dataset.trace)"
 RANGES = "return Bokeh.documents[0].roots().map(p => [p.x_range.start, p.x_range.end]);"
 
@@ -49,7 +49,7 @@ COMMANDS = {
 
 @pytest.fixture(scope="module")
 def results(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
-    """Folder of results with their report, by kind; each is made once."""
+    """Returns the folder with results and report of a kind; each folder is computed once."""
 
     @cache
     def make(kind: str) -> Path:
@@ -169,12 +169,12 @@ def test_fewer_points_of_a_long_signal_keep_every_peak(samples: int) -> None:
     assert len(reduced.t) == len(shown) <= 4002
     assert (shown.max(), shown.min()) == (x.max(), x.min())
     assert np.all(np.diff(reduced.t) >= 0)
-    # Each value stands within a bucket of its time.
+    # The reduction shifts an extreme value by at most one bucket of time.
     width = reduced.bucket * 1e-3
     for value in (x.max(), x.min()):
         (at,) = t[x == value]
         assert np.abs(reduced.t[shown == value] - at).min() <= width
-    # Around the middle there is every sample.
+    # An interval in the middle contains every sample.
     first, last = reduced.whole or (t[0], t[-1])
     inside = (t >= first) & (t <= last)
     start = int(np.searchsorted(reduced.t, first))

@@ -1,4 +1,4 @@
-"""The report of a log: the answer first, and the same numbers as the command."""
+"""The report of a log begins with the result, and has the same numbers as the command."""
 
 import json
 import re
@@ -21,7 +21,7 @@ SPIKE = 5.0
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Results of a log of 60 s with a gap of 200 rows, a row without a number and a wrong one."""
+    """Folder with a log of 60 s that has a gap, a row without a number and a wrong row."""
     folder = tmp_path_factory.mktemp("log")
     log = awas_log(1.0, 0.3, 60.0)
     log["q"][GAP.stop] += SPIKE
@@ -94,7 +94,7 @@ def test_limits_keep_what_belongs_to_the_signal() -> None:
     low, high = limits(spiked)
     assert low == x.min() and x.max() < high < 3
     assert limits(np.array([np.nan])) == (0.0, 1.0)
-    step = np.append(np.zeros(10_000), 1.0)  # the one value that differs is the signal
+    step = np.append(np.zeros(10_000), 1.0)  # a single different value is no outlier
     assert limits(step) == (0.0, 1.0)
 
 

@@ -1,4 +1,4 @@
-"""Jobs in parallel, and the performance indices (35), (36) of their results."""
+"""Tests of parallel jobs, and of the performance indices in equations (35) and (36)."""
 
 import math
 import os
@@ -34,7 +34,7 @@ def test_results_are_in_the_order_of_the_jobs() -> None:
     jobs = [partial(after, seconds, value) for seconds, value in ((0.5, 1), (0.0, 2), (0.0, 3))]
     assert run_all(jobs, processes=2, progress=done.append) == [1, 2, 3]
     assert done == [1, 1, 1]
-    assert [place for place, _ in spread(jobs, processes=2)][-1] == 0  # it takes longest
+    assert [place for place, _ in spread(jobs, processes=2)][-1] == 0  # job 0 is the slowest
 
 
 def test_the_first_exception_ends_them_all() -> None:
@@ -56,14 +56,14 @@ def test_a_process_that_is_ended_from_outside() -> None:
 
 
 def test_indices_by_hand() -> None:
-    # Errors 0, 1, 2; relative 0, 1/2, 1/2; p = 2.
+    # The errors are 0, 1, 2, the relative errors 0, 1/2, 1/2, and p = 2.
     assert mse([1.0, 2.0, 4.0], [1.0, 1.0, 2.0]) == 2.5
     assert msrep([1.0, 2.0, 4.0], [1.0, 1.0, 2.0]) == 25.0
     assert mean_error([1.0, 2.0, 4.0], [1.0, 1.0, 2.0]) == pytest.approx(-100 / 3, rel=1e-15)
 
 
 def test_errors_relative_to_another_stiffness_by_hand() -> None:
-    # Errors +1, -1, +2, the reference zero at first; relative 1/2, -1/4, 2/8; p = 2.
+    # The errors are +1, -1, +2, the relative errors 1/2, -1/4, 2/8 after a reference of 0.
     arguments = [0.0, 3.0, 6.0], [1.0, 2.0, 8.0], [2.0, 4.0, 8.0]
     assert msrep(*arguments) == pytest.approx((1 / 4 + 1 / 16 + 1 / 16) / 2 * 100, rel=1e-14)
     assert mean_error(*arguments) == pytest.approx((1 / 2 - 1 / 4 + 1 / 4) / 3 * 100, rel=1e-14)
@@ -73,7 +73,7 @@ def test_indices_of_an_estimate_that_starts_late() -> None:
     t = 1e-3 * np.arange(2001, dtype=np.float64)
     sigma = np.full(2001, 50.0)
     estimate = np.where(t < 0.02, 0.0, np.where(t < 1.0, 50.0, 50.5))
-    # 20 samples of 100 % and 1001 of 1 %, the latter from t = 1 s to 2 s.
+    # The error is 100 % in 20 samples, then 1 % in 1001 samples from t = 1 s to 2 s.
     found = indices(t, sigma, estimate)
     assert found.mse == pytest.approx((20 * 2500.0 + 1001 * 0.25) / 2000)
     assert found.msrep == pytest.approx((20 + 1001 * 1e-4) / 2000 * 100)
@@ -121,5 +121,5 @@ def test_relative_error_of_zero_stiffness_is_refused() -> None:
 
 
 def test_interval_of_equal_values_is_exactly_zero() -> None:
-    assert float(np.std([0.1] * 20)) > 0  # what rounding would make of it
+    assert float(np.std([0.1] * 20)) > 0  # wrong because of rounding
     assert mean_interval([0.1] * 20) == (0.1, 0.0)

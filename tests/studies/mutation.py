@@ -1,11 +1,11 @@
-"""Mutation testing of c/: do the tests notice one wrong token?
+"""Mutation testing of the C library: do its tests detect one wrong token?
 
     build/venv/bin/python tests/studies/mutation.py [NUMBER [SEED]]
 
-changes one token (operator, comparison, constant, index, function) at one of NUMBER places, which
-are spread over all files of c/, and runs the tests of the library with this mutant. It prints the
-mutants that no test noticed. The places are chosen by a hash of SEED and of their line, so they
-stay the same if other lines of the code change.
+The program selects NUMBER places in all files of c/. At each place it changes one token (operator,
+constant, index or function), and runs the tests with this mutant. It prints all mutants that pass
+the tests. A hash of SEED and of the source line selects a place, so that changes of other lines do
+not affect the selection.
 """
 
 import hashlib
@@ -26,12 +26,12 @@ TESTS = Path(__file__).resolve().parents[1]
 LIBRARY = TESTS.parent / "c"
 FILE = "libsigmahat_test_driver.so"
 SOURCES = {file.name: file for file in sorted(LIBRARY.rglob("*.c"))}
-NUMBER, SEED = 6, "fresh-b"  # the sample of the test in the gate
+NUMBER, SEED = 6, "fresh-b"  # the sample that CI tests
 LIMIT = 400
-"""Time of the processor [s] after which a mutant loops endlessly: the tests take much less."""
-REQUIRED = 0.9  # share of the mutants that the tests have to notice
+"""Processor time [s] after which a mutant counts as an endless loop; tests are much faster."""
+REQUIRED = 0.9  # share of the mutants that the tests must detect
 TESTED = (*(Path(name).stem for name in SOURCES), "regression_oracle", "misfit_columns", "evaluate")
-"""Names of the tests that call the library of a build tree."""
+"""Names of the tests that use the C library of the build tree."""
 PYTEST = ("-x", "-q", "-p", "no:cacheprovider", "--hypothesis-seed=0", "-m", "not slow")
 FLAGS = (
     *("-std=gnu99", "-O1", "-ffp-contract=off", "-fPIC", "-w", "-fsanitize=bounds"),
@@ -39,7 +39,7 @@ FLAGS = (
     *sorted({f"-I{header.parent}" for header in LIBRARY.rglob("*.h")}),
 )
 
-# Replacements of a token. The first one that compiles to a different program is used.
+# Replacements of a token. The first replacement that changes the compiled program is used.
 SWAPS = {
     "<": ("<=", ">"), "<=": ("<", ">="), ">": (">=", "<"), ">=": (">", "<="),
     "==": ("!=",), "!=": ("==",), "&&": ("||",), "||": ("&&",),
@@ -56,7 +56,7 @@ TOKEN = re.compile(
     re.DOTALL | re.MULTILINE,
 )
 
-# Equivalent mutants: file, changed code, why no test can notice the change.
+# Equivalent mutants: file, changed code, and the reason why no test can detect the change.
 EQUIVALENT: tuple[tuple[str, str, str], ...] = (
     ("columns.c", "return -(gamma) * f->first", "no output has the sign of this column"),
     ("method.c", "return p->method >= 1 &&", "there is no method 0; in the table it is NULL"),
@@ -77,7 +77,7 @@ EQUIVALENT: tuple[tuple[str, str, str], ...] = (
 
 @dataclass(frozen=True)
 class Mutant:
-    """One file of c/ with one token changed."""
+    """A C source file in which one token is changed."""
 
     file: str
     start: int
@@ -89,13 +89,13 @@ class Mutant:
         return original[: self.start] + self.new + original[self.start + len(self.old) :]
 
     def line(self) -> str:
-        """The changed line."""
+        """Returns the source line after the change."""
         text = self.text()
         begin = text.rfind("\n", 0, self.start) + 1
         return text[begin : text.find("\n", self.start)].strip()
 
     def makes(self, code: str) -> bool:
-        """Whether the change has produced this code, which may have several lines."""
+        """Returns whether the mutant contains this code, which may have several lines."""
         texts = (" ".join(text.split()) for text in (SOURCES[self.file].read_text(), self.text()))
         before, after = (text.count(code) for text in texts)
         return after > before
@@ -112,7 +112,7 @@ def wrong(kind: str | None, token: str) -> tuple[str, ...]:
 
 
 def candidates(file: Path, seed: str) -> list[tuple[Mutant, ...]]:
-    """For each place of a file, in the order of their use: the mutants to try there."""
+    """Returns the possible mutants of each place in a file, with the places in random order."""
     places = []
     alike: Counter[str] = Counter()
     for match in TOKEN.finditer(file.read_text()):
@@ -126,7 +126,7 @@ def candidates(file: Path, seed: str) -> list[tuple[Mutant, ...]]:
 
 
 def build(folder: Path, mutant: Mutant | None = None) -> Path | None:
-    """A new build tree with the library, or with that of a mutant. None if the mutant is not C."""
+    """Builds the library, or a mutant of it, in a new folder. Returns None after a C error."""
     tree = Path(tempfile.mkdtemp(dir=folder))
     sources = {**SOURCES, "run.c": TESTS / "drivers" / "run.c"}
     if mutant:
@@ -138,14 +138,14 @@ def build(folder: Path, mutant: Mutant | None = None) -> Path | None:
 
 
 def files_for(source: str = "") -> list[str]:
-    """All test files, those of the changed source first."""
+    """Returns all test files, beginning with the tests of the changed source."""
     names = sorted(TESTED, key=lambda name: name != Path(source).stem)
     return [str(path) for name in names for path in TESTS.glob(f"c/test_{name}.py")]
 
 
 def passes(tree: Path, files: Sequence[str]) -> bool:
-    """Runs the fast tests with the library of a build tree, which it removes. False if a test fails
-    or crashes, or if they take more than LIMIT."""
+    """Runs the fast tests with the library in a build tree, and then removes the tree. Returns
+    False if a test fails or crashes, or if the tests take longer than LIMIT."""
     command = [sys.executable, "-m", "pytest", *PYTEST, *files]
     environment = {**os.environ, "SIGMAHAT_BUILD": str(tree)}
     pipe, both = subprocess.PIPE, subprocess.STDOUT
@@ -159,14 +159,14 @@ def passes(tree: Path, files: Sequence[str]) -> bool:
 
 
 def shares(number: int) -> dict[str, int]:
-    """Number of mutants of each file: at least two, else proportional to its number of places."""
+    """Number of mutants of each file: proportional to its number of places, but at least two."""
     places = {name: len(candidates(file, "")) for name, file in SOURCES.items()}
     total = sum(places.values())
     return {file: max(2, round(number * count / total)) for file, count in places.items()}
 
 
 def mutants(folder: Path, file: str, number: int, seed: str) -> Iterator[tuple[Mutant, Path]]:
-    """The first mutants of a file that compile to a different program, with their build trees."""
+    """Yields mutants of a file that compile to a different program, with their build trees."""
     unchanged = (folder / FILE).read_bytes()
     for choices in candidates(SOURCES[file], seed):
         if number == 0:
@@ -180,7 +180,7 @@ def mutants(folder: Path, file: str, number: int, seed: str) -> Iterator[tuple[M
 
 
 def judge(folder: Path, file: str, number: int, seed: str) -> Counter[str]:
-    """Runs the tests with mutants of a file: how many were killed, survived, or are equivalent."""
+    """Tests mutants of a file; returns how many are killed, survive, or are equivalent."""
     outcome: Counter[str] = Counter()
     for mutant, tree in mutants(folder, file, number, seed):
         passed = passes(tree, files_for(file))
@@ -195,8 +195,8 @@ def judge(folder: Path, file: str, number: int, seed: str) -> Counter[str]:
 def run(folder: Path, number: int, seed: str) -> Counter[str]:
     """Makes at least `number` mutants in a temporary folder and runs the tests with each.
 
-    Returns how many were killed, survived, or are equivalent. Raises RuntimeError if the tests do
-    not pass with the code as it is.
+    Returns how many mutants were killed, survived, or are equivalent. Raises RuntimeError if the
+    tests fail with the unchanged code.
     """
     unchanged = build(folder)
     if unchanged is None:

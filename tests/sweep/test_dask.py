@@ -1,4 +1,4 @@
-"""Sweeps on a Dask cluster of this machine, started as a user starts one."""
+"""Tests of sweeps on a local Dask cluster, which is started like a user would do."""
 
 import json
 import signal
@@ -36,20 +36,20 @@ def background(*arguments: str, cwd: Path) -> Iterator[subprocess.Popen[bytes]]:
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Of the cluster."""
+    """Folder of the Dask cluster."""
     return tmp_path_factory.mktemp("cluster")
 
 
 @pytest.fixture(scope="module")
 def scheduler(folder: Path) -> Iterator[subprocess.Popen[bytes]]:
-    """One for all tests, without workers. The last test ends it."""
+    """Process of one scheduler for all tests, without workers. The last test kills it."""
     with background("scheduler", "--port", "0", *HERE, cwd=folder) as process:
         yield process
 
 
 @pytest.fixture(scope="module")
 def address(scheduler: subprocess.Popen[bytes], folder: Path) -> str:
-    """Of the scheduler, once it is there."""
+    """Address of the scheduler, after the scheduler has started."""
     file = folder / "scheduler.json"
     wait_until(lambda: file.exists() and bool(file.read_text()), scheduler)
     address: str = json.loads(file.read_text())["address"]
@@ -58,14 +58,14 @@ def address(scheduler: subprocess.Popen[bytes], folder: Path) -> str:
 
 @contextmanager
 def worker(folder: Path, name: str, runs: int = 1) -> Iterator[subprocess.Popen[bytes]]:
-    """A process that does so many runs at a time."""
+    """Process of a worker that executes `runs` simulations in parallel."""
     options = ["--nthreads", str(runs), "--no-nanny", "--name", name, "--local-directory", name]
     with background("worker", *HERE, *options, cwd=folder) as process:
         yield process
 
 
 def wait_for_workers(address: str, count: int) -> None:
-    """Waits until so many processes are connected to the scheduler."""
+    """Waits until `count` workers are connected to the scheduler."""
     with distributed.Client(address, timeout=300, set_as_default=False) as client:
         client.wait_for_workers(count, timeout=300)
 
@@ -74,13 +74,13 @@ def wait_for_workers(address: str, count: int) -> None:
 def test_a_scheduler_that_is_slow_and_without_workers(
     scheduler: subprocess.Popen[bytes], address: str, shell: Shell
 ) -> None:
-    # GIVEN a scheduler that does nothing for much longer than one that is not there is waited for
+    # GIVEN a scheduler that stops for longer than the time-out for a missing scheduler
     scheduler.send_signal(signal.SIGSTOP)
     process = start(f"{QUICK} --scheduler {address} --out out")
     time.sleep(6)
     assert process.poll() is None
     scheduler.send_signal(signal.SIGCONT)
-    # THEN it is found; what is missing are its workers
+    # THEN the sweep finds the scheduler, and reports that it has no workers.
     output, errors = process.communicate(timeout=300)
     assert (process.returncode, output) == (2, "")
     (line,) = errors.splitlines()
@@ -94,7 +94,7 @@ def test_one_of_two_workers_killed(address: str, folder: Path, shell: Shell) -> 
     with worker(folder, "one") as one, worker(folder, "two", runs=2):
         wait_for_workers(address, 2)
         process = start(f"{command} --scheduler {address} --out cluster")
-        # WHEN a worker is killed while both have work
+        # WHEN one worker is killed while both workers are busy
         out = Path("cluster")
         wait_until(lambda: written(out) >= 3, process)
         one.kill()
@@ -102,7 +102,7 @@ def test_one_of_two_workers_killed(address: str, folder: Path, shell: Shell) -> 
         output, errors = process.communicate(timeout=600)
     assert (process.returncode, errors) == (0, "")
     assert 3 <= done_before < 16
-    # THEN every run is there once, as without a cluster
+    # THEN the results contain every run exactly once, as without a cluster.
     assert len(records(out)) == 16
     assert shell.run(f"{command} --out here").splitlines()[:-1] == output.splitlines()[:-1]
     for name in ("sweep.parquet", "summary.csv", "distributions.svg"):

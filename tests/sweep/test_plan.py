@@ -1,4 +1,4 @@
-"""The plan of a sweep, from the command line."""
+"""Tests of the plan of a sweep, which comes from the command line."""
 
 from itertools import product
 from typing import Any
@@ -47,7 +47,7 @@ def test_runs_in_the_order_of_the_settings() -> None:
     listed = [(r.scenario, *(r.parameters[name] for name in names[:2]), r.seed) for r in runs]
     lists = (("table1", "as-printed"), (0.9e-3, 1.1e-3), ("Enhanced", "Standard"), (1, 2))
     assert listed == [*product(*lists)]
-    # What is drawn is the same for the same seed, whatever else differs.
+    # Runs with the same seed have the same random parameter, even if other parameters differ.
     drawn = {(r.seed, r.parameters["RESIDUAL.motor.B"]) for r in runs}
     (_, first), (_, second) = sorted(drawn)  # two pairs
     assert first != second

@@ -1,4 +1,4 @@
-"""Sweeps: the right numbers, and none lost or done twice."""
+"""A sweep gives the right results, and neither loses nor repeats a run."""
 
 import csv
 import signal
@@ -68,28 +68,28 @@ def test_summary_and_errors_of_parameters(shell: Shell) -> None:
 @pytest.mark.slow("several sweeps, each in processes of its own")
 def test_killed_and_resumed_is_the_same_file(shell: Shell) -> None:
     command = f"{QUICK} --seeds 8 --set estimator.residual.K_I=200,300"
-    # GIVEN a sweep in one go
+    # GIVEN a complete sweep without interruption
     shell.run(f"{command} --out whole")
-    # WHEN another is killed in the middle
+    # WHEN another sweep is killed before its end
     killed = Path("killed")
     process = start(f"{command} --out killed")
     wait_until(lambda: written(killed) >= 2, process)
     workers = psutil.Process(process.pid).children(recursive=True)
     process.send_signal(signal.SIGKILL)
     process.communicate()
-    # THEN its workers are gone with it
+    # THEN the worker processes of the killed sweep end, too.
     gone, alive = psutil.wait_procs(workers, timeout=300)
     assert (len(gone), alive) == (len(workers), [])
     before = records(killed)
     assert 2 <= len(before) < 16
-    # AND the same command does the rest, and only that
+    # AND the same command only executes the missing runs.
     said = shell.run(f"{command} --out killed")
     assert shell.err == ""
     assert records(killed)[: len(before)] == before
     assert len(records(killed)) == 16
     for name in FILES - {NAME}:
         assert Path("whole", name).read_bytes() == (killed / name).read_bytes()
-    # AND once more, nothing is left to do
+    # AND a repetition of the command executes no runs.
     complete = (killed / NAME).read_bytes()
     assert shell.run(f"{command} --out killed") == said
     assert (killed / NAME).read_bytes() == complete
@@ -104,7 +104,7 @@ def test_a_run_is_not_repeated_in_any_plan(tmp_path: Path, monkeypatch: pytest.M
         return Outcome({"a": Indices(*[10 * mass + run.seed] * len(INDICES))}, None)
 
     def outcomes(seeds: int, *masses: float) -> list[Outcome]:
-        """Of all runs of a plan; `done` has those that were done."""
+        """Outcomes of all runs of a plan; the list `done` then contains the executed runs."""
         plan = Plan(("table1",), seeds, (), {"plant.link.M": masses})
         done.clear()
         with closing(Records(tmp_path / NAME)) as opened:
@@ -113,14 +113,14 @@ def test_a_run_is_not_repeated_in_any_plan(tmp_path: Path, monkeypatch: pytest.M
     monkeypatch.setattr(job, "execute", execute)
     monkeypatch.setattr(job, "spread", lambda jobs: (each for each in enumerate(j() for j in jobs)))
     assert len(outcomes(1, 1.0, 2.0)) == len(done) == 2
-    # More seeds: what is missing is done, and the outcomes are in the order of the plan.
+    # WHEN there are more seeds, only new runs are executed, and outcomes follow the plan's order.
     found = outcomes(2, 1.0, 2.0)
     assert done == [(2, 1.0), (2, 2.0)]
     assert [each.indices["a"].mse for each in found] == [11, 12, 21, 22]
-    # Fewer seeds, and another value
+    # WHEN there are fewer seeds and a new value, only the run with this value is executed.
     assert [each.indices["a"].mse for each in outcomes(1, 2.0, 3.0)] == [21, 31]
     assert done == [(1, 3.0)]
-    # Other FMUs
+    # WHEN the FMUs differ, all runs are executed again.
     monkeypatch.setattr(preparation, "_fmu_digest", lambda name: "other")
     assert len(outcomes(1, 1.0, 2.0)) == len(done) == 2
 
@@ -148,7 +148,7 @@ def test_a_file_of_runs_that_is_in_use_or_damaged(shell: Shell) -> None:
 
 
 def test_runs_that_fail_are_reported(shell: Shell) -> None:
-    # GIVEN an inertia that is negative, which the FMU refuses, for some seeds
+    # GIVEN a random inertia that is negative for some seeds, which the FMU refuses
     inertia = "'estimator.motor.B=normal(2.3e-5,5e-5)'"
     said = shell.run(f"{QUICK} --seeds 6 --set {inertia} --out out")
     assert shell.err == ""

@@ -1,4 +1,4 @@
-"""`sigmahat validate`: two logs of one joint that are wrong in the same way confirm nothing."""
+"""`sigmahat validate` does not confirm two logs of a joint that have the same error."""
 
 from pathlib import Path
 from typing import Any
@@ -17,8 +17,8 @@ WRAPPED = RIGHT.replace("zero = 1500", "zero = 1500\nwrap = 4096").replace(
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with two logs of a joint, whose counter was in other turns at the start. The second
-    begins at 0.5 rad, under a torque of 1 N.m on the joint."""
+    """Folder with two logs of a joint, whose motor counter starts in different turns. The second
+    log begins at 0.5 rad with a load of 1 N.m."""
     folder = tmp_path_factory.mktemp("faults")
     for name, start, load in (("first", 0.0, 0.0), ("second", 0.5, 1.0)):
         plant = {**KNEE, "initial.q": start, "initial.theta": start}
@@ -35,7 +35,7 @@ def here(folder: Path, shell: Shell, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def validate(shell: Shell, text: str, status: int) -> dict[str, Any]:
-    """The result with a configuration for both logs."""
+    """Runs `validate` with the same configuration for both logs, and returns the result."""
     Path("first.toml").write_text(text)
     shell.run("estimate first.parquet")
     found: dict[str, Any] = shell.json("validate second.parquet --with first.toml", status)
@@ -43,7 +43,7 @@ def validate(shell: Shell, text: str, status: int) -> dict[str, Any]:
 
 
 def unwrapped(name: str) -> str:
-    """A configuration of the counter that does not wrap, with a fault of WRONG."""
+    """Returns a configuration for the counter without wrapping, with an error from WRONG."""
     old, new, _ = WRONG[name]
     return RIGHT.replace("motor_counts", "unwrapped").replace(old, new)
 
@@ -51,13 +51,13 @@ def unwrapped(name: str) -> str:
 def test_a_counter_that_begins_in_another_turn(shell: Shell) -> None:
     found = validate(shell, WRAPPED, 0)
     assert found["agree"] is True and found["fault"] is None
-    # THEN 0.5 rad are 8 turns of the motor, whose counter has one period in each
+    # THEN `validate` shifts the motor angle by 8 counter periods, which are 8 turns or 0.5 rad.
     moved = "theta: +8 periods of its counter, so that the deformation is in range.phi"
     assert moved in found["notes"]
     value, half = found["stiffness of this log [N.m/rad]"]
     assert abs(value - KNEE["spring.k_1"]) < half < 50
-    # THEN without range.phi nothing is moved, for nobody knows how large the deformation may be,
-    # but what was seen is named with the key
+    # WHEN range.phi is not set, THEN the largest possible deformation is unknown.
+    # THEN `validate` does not shift the angle, but reports the difference and the key to set.
     found = validate(shell, WRAPPED.replace("range.phi = 0.03\n", ""), 1)
     assert not found["agree"]
     assert not any("periods of its counter" in note for note in found["notes"])
@@ -66,7 +66,7 @@ def test_a_counter_that_begins_in_another_turn(shell: Shell) -> None:
 
 
 def test_a_wrong_zero_is_no_fault_where_the_stiffness_is_right(shell: Shell) -> None:
-    """The powers of the deformation hold a linear spring with any zero."""
+    """GIVEN a linear spring, THEN an offset of the deformation does not change the stiffness."""
     found = validate(shell, unwrapped("encoder zero 0"), 0)
     assert found["agree"] is True
     for log in ("learned", "of this log"):

@@ -1,4 +1,4 @@
-"""`sigmahat validate`: whether a second log of a joint confirms what was learned from the first."""
+"""`sigmahat validate` tests whether a second log of a joint confirms the estimated stiffness."""
 
 import shutil
 from pathlib import Path
@@ -17,7 +17,7 @@ SOFT = {"spring.k_s": 0.8 * 14220.0}
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder in which a first log was learned from, with three others."""
+    """Folder with the results of a first log, and with three other logs."""
     folder, log = tmp_path_factory.mktemp("validate"), awas_log(1.0, 0.3, DURATION)
     write_log(awas_log(1.3, 0.3, DURATION, seed=2), folder / "same.parquet")
     write_log(awas_log(1.3, 0.3, DURATION, seed=2, plant=SOFT), folder / "softer.parquet")
@@ -28,7 +28,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def knee(folder: Path, shell: Shell) -> Shell:
-    """Commands in a copy of the folder."""
+    """A shell in a copy of the folder with logs."""
     shutil.copytree(folder, Path(), dirs_exist_ok=True)
     return shell
 
@@ -45,11 +45,11 @@ def test_another_log_of_the_same_joint_agrees_and_a_softer_spring_does_not(knee:
     assert same["start_from"] == "sigmahat-results/knee/state.json"
     assert same["this log within learned"] > 0.9 and same["learned within this log"] > 0.9
     assert same["overlap"] > 0.99
-    # THEN the torque is explained, and below 2 Hz better, where there is less noise
+    # THEN the model predicts the torque, and even better below 2 Hz, where noise is smaller.
     assert same["torque"]["relative [1]"] < 0.05
     assert same["torque below 2 Hz"]["relative [1]"] < 0.02
     assert 0.9 < same["torque"]["share"] <= 1.0
-    # THEN the stiffness is that of the plant, as the median over the log
+    # THEN the stiffness equals the median of the true stiffness over the log.
     true = np.median(awas_log(1.3, 0.3, DURATION, seed=2)["true"])
     learned, alone = "stiffness learned [N.m/rad]", "stiffness of this log [N.m/rad]"
     for name in (learned, alone):
@@ -60,7 +60,7 @@ def test_another_log_of_the_same_joint_agrees_and_a_softer_spring_does_not(knee:
     assert softer["agree"] is False
     assert softer["z"] > 3
     assert softer["this log within learned"] < 0.1 and softer["learned within this log"] < 0.1
-    # THEN it leaves about that of the torque: friction hides some of it
+    # THEN about 20 % of the torque remain unexplained, or less because of friction.
     for name in ("torque", "torque below 2 Hz"):
         assert 0.1 < softer[name]["relative [1]"] < 0.25
         assert softer[name]["relative [1]"] > 5 * same[name]["relative [1]"]
@@ -82,7 +82,7 @@ def test_a_log_without_motion_cannot_tell_and_nothing_is_written(knee: Shell) ->
 def test_a_log_that_was_learned_from_confirms_nothing(knee: Shell) -> None:
     result = knee.json(f"validate knee.parquet {WITH}", 1)
     assert result["repeated"] is True and result["agree"] is None
-    # THEN both stiffnesses are the same, to the last bit: both are from the state at the end
+    # THEN both stiffnesses are exactly equal, because both come from the same final state.
     assert result["z"] == 0.0
     assert result["stiffness learned [N.m/rad]"] == result["stiffness of this log [N.m/rad]"]
 
@@ -106,7 +106,7 @@ def test_wrong_arguments(arguments: str, words: str, knee: Shell) -> None:
     assert words in knee.refused(f"validate {arguments}")
 
 
-# ---- what it is made of -------------------------------------------------------------------------
+# ---- functions of the validation ----------------------------------------------------------------
 
 
 def estimates(sigma: float, std: float, per_gain: float = 1.0) -> dict[str, Array]:
@@ -115,7 +115,7 @@ def estimates(sigma: float, std: float, per_gain: float = 1.0) -> dict[str, Arra
 
 
 def test_agreement_in_figures() -> None:
-    # GIVEN 100 +- 2 and 105 +- 3: the difference is 5 / sqrt(4 + 9)
+    # GIVEN 100 +- 2 and 105 +- 3, THEN the normalised difference is 5 / sqrt(4 + 9).
     found = agreement(estimates(100.0, 2.0), estimates(105.0, 3.0), 0.0)
     assert found.z == pytest.approx(5 / np.sqrt(13))
     assert found.before == pytest.approx((100.0, 3.92)) and found.alone == (105.0, 3 * 1.96)
@@ -126,8 +126,8 @@ def test_agreement_in_figures() -> None:
 
 
 def test_the_gain_of_the_torque_is_one_error_of_both() -> None:
-    """It widens both intervals, and explains no difference; but one where it acts differently."""
-    # GIVEN 10 % of gain, and 0.5 of their own
+    """An unknown gain widens both intervals. It explains no difference if it acts alike in both."""
+    # GIVEN a standard deviation of 10 % from the gain, and an independent part of 0.5
     before, alone = (estimates(x, float(np.hypot(0.5, 0.1 * x))) for x in (100.0, 105.0))
     found = agreement(before, alone, 0.1)
     assert found.alone_in_before == 1.0
