@@ -1,8 +1,8 @@
 /* Co-simulation master in plain C for StiffnessEstimator.fmu, see docs/how-to/c-master.md.
  *
  * The call is `master FOLDER LIBRARY`, with the folder of the unpacked FMU and its shared library. The program
- * simulates a joint with a spring of 150 N.m/rad and a torque sensor. The joint oscillates at 1 Hz for two seconds, and the
- * estimator receives its measurements. At the end the program prints the estimated stiffness.
+ * simulates a joint with a spring of 150 N.m/rad and a torque sensor. The joint oscillates at 1 Hz for two seconds, and
+ * the estimator receives its measurements. At the end the program prints the estimated stiffness.
  */
 #include <dlfcn.h>
 #include <math.h>
@@ -69,7 +69,7 @@ static fmi2ValueReference reference(const char *variable)
     return (fmi2ValueReference)strtoul(number, NULL, 10);
 }
 
-/* Loads a function of the FMU. The code uses memcpy because C cannot cast object pointers to function pointers. */
+/* Loads a function of the FMU. C cannot cast object pointers to function pointers, so memcpy copies the pointer. */
 static void load(const char *name, void *function)
 {
     void *symbol = dlsym(library, name);

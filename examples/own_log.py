@@ -20,7 +20,7 @@ def main(log_file: Path, configuration_file: Path) -> None:
     log = sigmahat.open_log(log_file)
     configuration = sigmahat.read_configuration(configuration_file)
     motor = sigmahat.identify(log, configuration)
-    # The ranges allow deformations and torques that are up to 20 % larger than in this log.
+    # The ranges allow deformations and torques that are up to 20 % larger than in the log.
     ranges = {"range.phi": 1.2 * motor.phi, "prior.tau_e": 1.2 * motor.torque}
     orders = {"rls.n": motor.n, "rls.symmetric": motor.symmetric}
     parameters = {**configuration.parameters, **ranges, **orders}

@@ -61,7 +61,7 @@ def run(with_estimate: bool) -> NDArray[np.float64]:
         used = correction * nominal if with_estimate else nominal
         # The square root of the stiffness depends linearly on the length of the lever arm.
         # The velocity of the motor is nearly proportional to its torque tau_c.
-        # So with a proportional controller, the error of the square root decays like exp(-4 t).
+        # Under proportional control, the error of the square root decays like exp(-4 t).
         tau_c = 0.0
         if t >= START:
             error = math.sqrt(wanted(t)) - math.sqrt(max(used, 0.0))

@@ -1,5 +1,5 @@
 /* FMU with two estimators, one for each motor of an antagonistic pair. Both estimators use the encoder of the link.
- * The stiffness of the device is the sum of both estimated stiffnesses (section II of the paper).
+ * The stiffness of the joint is the sum of both estimated stiffnesses (section II of the paper).
  */
 #include <math.h>
 
@@ -27,7 +27,7 @@ static sh_parameters parameters_of(const AntagonisticStiffnessEstimator *fmu, in
     return p;
 }
 
-/* The reason to doubt the summed stiffness. One motor may move too little if the sum is still certain enough. */
+/* Why the summed stiffness is not confident. One motor may move too little if the sum still has a small deviation. */
 static int doubt_of_sum(const AntagonisticStiffnessEstimator *fmu)
 {
     const int one = fmu->side[0].output.doubt, other = fmu->side[1].output.doubt;

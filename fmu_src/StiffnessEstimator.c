@@ -1,4 +1,4 @@
-/* Binding of the stiffness estimator to the FMI shell. */
+/* Connects the stiffness estimator to the FMI shell, which implements the functions of FMI. */
 #include <math.h>
 
 #include "estimator_fmu.h"

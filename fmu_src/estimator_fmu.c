@@ -111,7 +111,7 @@ sh_status sh_estimator_fmu_step(sh_estimator_fmu *fmu, double t, double h, const
                                 sh_instance *log)
 {
     const double T = fmu->parameters.samplePeriod, periods = h / T;
-    /* A tick within this tolerance of the end of a step is left to the next step. Even a tiny step may have a tick. */
+    /* A tick within the tolerance of the end of a step moves to the next step. Even tiny steps may have a tick. */
     const double tolerance = periods < 2e-6 ? periods / 2.0 : 1e-6;
     sh_status status = SH_OK;
 

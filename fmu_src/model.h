@@ -9,10 +9,10 @@
 
 #include <stddef.h>
 
-/* Result of a call. Every version of FMI uses the same values. */
+/* Result of a call. Every version of FMI uses the same numbers for the status of a call. */
 typedef enum { SH_OK, SH_WARNING, SH_DISCARD, SH_ERROR } sh_status;
 
-/* Type of a variable. Each type is one bit, so that a function can accept a set of types. */
+/* Type of a variable. Each type of variable is one bit, so that a function can accept a set of types. */
 typedef enum {
     SH_TYPE_REAL = 1,
     SH_TYPE_INTEGER = 2,
@@ -54,9 +54,9 @@ typedef struct {
      * or SH_ERROR after a message. The pointer `check` may be NULL.
      */
     sh_status (*check)(const void *model, sh_instance *log);
-    /* Computes state and outputs at time t [s] from parameters and inputs. The shell may call it repeatedly. */
+    /* Computes state and outputs at time t [s] from parameters and inputs. `initialize` may be called repeatedly. */
     void (*initialize)(void *model, double t);
-    /* Returns 1 if an initialised model can advance from the state in `model`. The shell calls this function for a
+    /* Returns 1 if an initialised model can advance from the state in `model`. The shell calls `is_state` for a
      * deserialised state, after it has checked the range of each parameter.
      */
     int (*is_state)(const void *model);

@@ -14,7 +14,7 @@ static uint64_t next_bits(uint64_t *state)
     return z ^ (z >> 31);
 }
 
-/* Returns a uniform random number, the centre of one of 2^52 equal parts of (0, 1). It is exact and never 0 or 1. */
+/* Returns a uniform random number, the centre of one of 2^52 equal parts of (0, 1). It is never 0 or 1. */
 static double uniform(uint64_t *state)
 {
     return ((double)(next_bits(state) >> 12) + 0.5) / 4503599627370496.0;
@@ -30,9 +30,9 @@ double sh_noise_normal(int seed, uint64_t k, unsigned channel)
     state = next_bits(&state) + k;
     state = next_bits(&state);
 
-    /* Ratio-of-uniforms method of Kinderman and Monahan, ACM Trans. Math. Softw. 3 (1977). The last bit of a logarithm
-     * depends on the platform. But the logarithm only decides whether a pair of random numbers is accepted, and does
-     * not change the returned value.
+    /* The method is the ratio of uniforms: Kinderman and Monahan, ACM Transactions on Mathematical Software 3 (1977).
+     * The last bit of a logarithm depends on the platform. But the logarithm only decides whether a pair of random
+     * numbers is accepted, and does not change the returned random number.
      */
     do {
         const double v = 1.7155277699214135 * (uniform(&state) - 0.5); /* sqrt(8/e) */

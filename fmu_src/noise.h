@@ -7,7 +7,7 @@
 #include <stdint.h>
 
 /* Returns sample k of a noise channel, a random number with standard normal distribution. Samples of different channels
- * or different seeds are independent. Any seed and any k are allowed.
+ * or different seeds are independent. The seed and k may have any value.
  */
 double sh_noise_normal(int seed, uint64_t k, unsigned channel);
 

@@ -10,7 +10,7 @@
 #include "radau.h"
 #include "variables.h"
 
-/* Largest number of sample periods of the noise in one step. A double can represent this number exactly. */
+/* Largest number of sample periods of the noise in one step, a number that a double represents exactly. */
 static const double MAX_PERIODS = 1e15;
 
 /* Computes the outputs for the state x and the inputs u. */
@@ -28,8 +28,8 @@ static void set_outputs(sh_plant *plant, const double *u)
 }
 
 /* Advances to the last noise sample that is due at the end of a step. Noise samples are one period apart. As in
- * estimator_fmu.c, time is counted in periods. A sample that is due less than 1e-6 of a period after the end of the
- * step counts as due.
+ * estimator_fmu.c, time is counted in periods. A noise sample that is due less than 1e-6 of a period after the end
+ * of the step counts as due.
  */
 static void advance_noise(sh_plant *plant, double periods)
 {
@@ -54,8 +54,8 @@ static void initialize(void *model, double t)
     set_outputs(plant, plant->u);
 }
 
-/* Returns 1 if a simulation can continue from this state. With an internal step length of 0 or less, the integration
- * would never end. The age of the noise sample must be at most one period.
+/* Returns 1 if a simulation can continue from this state. With an internal step length of 0 or less, the integrator
+ * would never finish. The age of the noise sample must be at most one period.
  */
 static int is_state(const void *model)
 {

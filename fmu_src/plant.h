@@ -6,7 +6,7 @@
 
 #include "plant_functions.h"
 
-/* The elements of each array have the order of the model description. */
+/* The arrays have the order of the variables in the model description. */
 typedef struct {
     double p[SH_PLANT_PARAMETERS];
     double u[SH_PLANT_INPUTS];

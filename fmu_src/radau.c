@@ -157,7 +157,7 @@ static int solve_stages(const double *x, const double *u, const double *du, cons
     for (iteration = 0; iteration < MAX_NEWTON_ITERATIONS; ++iteration) {
         const double previous = change;
 
-        if (iteration == 0 && held) { /* all stages still equal the state x */
+        if (iteration == 0 && held) { /* all stages still equal the initial state x */
             for (i = 0; i < STAGES; ++i) {
                 (void)memcpy(F[i], f, sizeof F[i]);
             }
@@ -184,8 +184,8 @@ static int solve_stages(const double *x, const double *u, const double *du, cons
             return 1;
         }
         /* The changes of Newton's iteration shrink by a constant factor, so the error is a geometric series. Where f
-         * jumps by more than its magnitude, a change grows once, even in a very short step. Such a growth is accepted
-         * while the change is below the allowed error of the step.
+         * jumps by more than its magnitude, a change grows once, even in a very short step. Newton's iteration may
+         * grow in this way while the change is below the allowed error of the step.
          */
         if (iteration > 0) {
             const double rate = change / previous;
@@ -200,12 +200,12 @@ static int solve_stages(const double *x, const double *u, const double *du, cons
     return 0;
 }
 
-/* Estimates the error of a step with the stages x + Z, as a multiple of the allowed error. Only the part of the error
- * counts that remains after `followers` more steps of the same length.
+/* Estimates the error of a step with the stages x + Z, as a multiple of the allowed error. The estimate is the part of
+ * the error that remains after `followers` more steps of the same length.
  *
  * A motion that decays during the following steps need not be resolved. One step multiplies a mode by R(z), while the
- * exact solution multiplies this mode by exp(z). On the negative axis R(z) is below 1 / (1 - z / REAL). A solution of
- * the real system with `factors` applies this bound to all modes at once.
+ * exact solution multiplies this mode by exp(z). On the negative axis R(z) is below 1 / (1 - z / REAL). Each solution
+ * of a linear system with `factors` applies this bound of R(z) to all modes.
  *
  * f  state derivative at the start of the step
  */
@@ -221,7 +221,7 @@ static double estimate_error(double (*Z)[STATES], const double *f, const double 
     }
     solve_real(factors, error);
     size = norm(error, weight) / ERROR_TOLERANCE;
-    /* Until here `size` contains fast modes without damping, although the step itself already damps these modes. */
+    /* So far the error norm `size` includes fast modes without damping, although the step already damps fast modes. */
     for (; followers >= 0 && size > 1.0; --followers) {
         for (j = 0; j < STATES; ++j) {
             error[j] *= REAL / h;
@@ -271,7 +271,7 @@ int sh_radau_integrate(double *x, const double *u, const double *du, const doubl
     for (attempt = 0; attempt < allowed; ++attempt) {
         const double left = duration - elapsed;
         const double wanted = left > *h ? ceil(left / *h) : 1.0;
-        /* All planned steps of equal length are made. Only a plan of at least MAX_FOLLOWERS steps may still change. */
+        /* The planned steps of equal length are all made, unless at least MAX_FOLLOWERS steps are left. */
         const double pieces = owed > 0 && owed < MAX_FOLLOWERS ? owed : fmax(wanted, owed);
         const double step = left / pieces;
         const int followers = (int)fmin(pieces - 1.0, MAX_FOLLOWERS);
@@ -286,7 +286,7 @@ int sh_radau_integrate(double *x, const double *u, const double *du, const doubl
             factorized = step;
         }
         error = take(x, u_now, du, p, step, followers, factors, x_new);
-        /* The error estimate falls with the fourth power of the step. */
+        /* The error estimate is proportional to the fourth power of the step length. */
         *h = step * fmin(8.0, fmax(0.2, 0.9 / sqrt(sqrt(error))));
         if (error <= 1.0) {
             (void)memcpy(x, x_new, sizeof x_new);

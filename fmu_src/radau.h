@@ -7,7 +7,7 @@
 #ifndef SH_RADAU_H
 #define SH_RADAU_H
 
-/* Integrates the state x over `duration` > 0 in several steps. At the end, the allowed error of each state is
+/* Integrates the state x over `duration` > 0 in several steps. The allowed error of a state x at the end is
  * 1e-8 (scale + |x|), where the plant defines the scale. A motion that decays before the end is only resolved as far as
  * this motion changes x at the end.
  *

@@ -27,7 +27,7 @@ def build() -> Path:
 
 @pytest.fixture(scope="session")
 def c(build: Path) -> "Library":
-    """The C library as a Python object. The environment of `reproduce` cannot load the library."""
+    """The C library as a Python object, which the environment of `reproduce` cannot load."""
     from c_library import load
 
     return load(build)

@@ -1,4 +1,4 @@
-/* The interface of main.c to the hardware. Implement these functions for your own hardware. */
+/* The interface of main.c to the hardware. Implement the functions of this file for your own hardware. */
 #ifndef HARDWARE_H
 #define HARDWARE_H
 

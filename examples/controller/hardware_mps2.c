@@ -20,7 +20,7 @@ void hardware_start_ticks(uint32_t rate)
     SYSTICK->control = 7; /* timer on, interrupt on, clock of the processor as source */
 }
 
-/* Register for the control of interrupts. Its bit 26 is 1 while an interrupt of SysTick is pending. */
+/* Register for the control of interrupts, whose bit 26 is 1 while an interrupt of SysTick is pending. */
 static volatile uint32_t *const ICSR = (volatile uint32_t *)0xe000ed04;
 
 uint32_t hardware_elapsed(void)

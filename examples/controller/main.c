@@ -9,7 +9,7 @@
 
 enum { RATE = 1000, SECONDS = 3 };
 
-/* The estimator needs no other memory than these three structs. */
+/* The estimator needs no other memory than the structs of parameters, state and estimate. */
 static sh_parameters parameters;
 static sh_estimator estimator;
 static sh_estimate estimate;
@@ -30,7 +30,7 @@ void SysTick_Handler(void)
     }
     sigma = estimate.sigma;
     sigma_std = estimate.sigma_std;
-    /* At this place a controller would use estimate.sigma to compute its torque. */
+    /* A real controller would now use estimate.sigma to compute its torque. */
     ++ticks;
     elapsed = hardware_elapsed();
     if (elapsed > longest) {
@@ -38,8 +38,8 @@ void SysTick_Handler(void)
     }
 }
 
-/* Sets the parameters for a joint without a second motor that adjusts the stiffness. Therefore rls.m, the number of
- * powers of the set-point, is 1.
+/* Sets the parameters for a joint without a second motor that adjusts the stiffness. Without this second motor, rls.m,
+ * the number of powers of the set-point, is 1.
  */
 static void configure(sh_parameters *p)
 {

@@ -20,7 +20,7 @@ static void reset(void)
     _start();
 }
 
-/* Causes a second fault within the handler of a fault. The processor then stops and the emulator prints a message. */
+/* Causes a second fault in the handler of a fault, so that the processor stops and the emulator prints a message. */
 static void fault(void)
 {
     __asm volatile("udf #0");

@@ -1,6 +1,6 @@
 /* Runs the estimator in a loop at 1 kHz under Linux and sends each estimate as a JSON datagram.
  *
- *     live [SECONDS [PORT]]      the defaults are 60 s and port 9871 of this computer
+ *     live [SECONDS [PORT]]      Defaults: 60 s, port 9871
  *
  * At the end the program prints the largest delay of the loop and the duration of the longest tick.
  */
@@ -65,7 +65,7 @@ static int start(void)
     return 0;
 }
 
-/* Requests real-time priority and locked memory. Without these permissions the timing of the loop is less precise. */
+/* Requests real-time priority and locked memory. If the system denies both, the timing of the loop is less precise. */
 static void ask_for_priority(void)
 {
     const struct sched_param priority = {.sched_priority = PRIORITY};

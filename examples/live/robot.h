@@ -1,4 +1,4 @@
-/* The simulated joint of this example. For your own joint, read the encoders and the torque of the motor instead. */
+/* The simulated joint of this example. For your own joint, replace the simulation by code that reads the sensors. */
 #ifndef ROBOT_H
 #define ROBOT_H
 

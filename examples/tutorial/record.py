@@ -1,7 +1,7 @@
 """Simulates a knee with a series elastic actuator and writes knee.csv, the log of the tutorial.
 
 The spring hardens with its deformation, and the motor has Coulomb friction. The log lasts 20 s
-at 250 Hz. It has a 16-bit counter of the motor, the link in degrees and the current in amperes.
+at 250 Hz. The log has a 16-bit motor counter, the link in degrees and the current in amperes.
 
 Usage: python record.py [FOLDER]     The program writes an identical knee.csv in every call.
 """

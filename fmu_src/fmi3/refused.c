@@ -1,5 +1,5 @@
-/* Functions of FMI 3.0 for features that the FMUs of this project do not have. The standard demands that these
- * functions exist. Each of them fails with a message that names the missing feature.
+/* Functions of FMI 3.0 for features that the FMUs of this project do not have. FMI demands that such
+ * functions exist. Each function in this file fails with a message that names the missing feature.
  */
 #include "fmi3Functions.h"
 #include "simulation.h"

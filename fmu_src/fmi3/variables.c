@@ -39,7 +39,7 @@ ACCESS(Int32, SH_TYPE_INTEGER, SH_INTS)
 ACCESS(Int64, SH_TYPE_ENUMERATION, SH_INT64S)
 ACCESS(Boolean, SH_TYPE_BOOLEAN, SH_BYTES)
 
-/* No variable has one of the following types, so their functions refuse every value reference. */
+/* No variable has the type Float32, an integer type other than Int32 and Int64, or String. */
 ACCESS(Float32, 0, SH_BYTES)
 ACCESS(Int8, 0, SH_BYTES)
 ACCESS(UInt8, 0, SH_BYTES)

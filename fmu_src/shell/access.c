@@ -11,14 +11,14 @@ int sh_accepts(sh_instance *instance, const sh_variable *variable, double value,
     if (!sh_is_parameter(variable) || (isfinite(value) && value >= min && value <= max)) {
         return 1;
     }
-    /* The message shows a range as "[0, 1]" or "(-inf, inf)". */
+    /* The error message shows the allowed range as "[0, 1]" or "(-inf, inf)". */
     sh_report(instance, SH_ERROR, "%s: parameter %s = %.9g is out of its range %c%.9g, %.9g%c.",
               function, variable->name, value, isfinite(min) ? '[' : '(', min, max,
               isfinite(max) ? ']' : ')');
     return 0;
 }
 
-/* Returns 1 for the value reference of time, which follows the references of the table. Only FMI 3.0 has it. */
+/* Returns 1 for the value reference of time, a variable of FMI 3.0. Time follows the references of the table. */
 static int is_time(const sh_access *access, uint32_t reference)
 {
     return access->fmi3 && reference == sh_fmu_model.count;
@@ -133,7 +133,7 @@ sh_instance *sh_begin_set(const sh_access *access, const void *values)
             refuse_reference(access, access->references[i]);
             return NULL;
         }
-        if (variable->role == SH_ROLE_INPUT) { /* sh_accepts allows any value of an input */
+        if (variable->role == SH_ROLE_INPUT) { /* an input may have any value, see sh_accepts */
             continue;
         }
         if (!may_be_set(instance, variable, access->function)) {

@@ -16,7 +16,7 @@ typedef enum {
 
 /* One call of the importer that reads or writes variables. */
 typedef struct {
-    void *handle;         /* from the importer; may be NULL */
+    void *handle;         /* instance as passed by the importer; may be NULL */
     const char *function; /* name of the called function, for messages */
     unsigned types;       /* bit set of the allowed SH_TYPE_*; 0: any reference is an error */
     sh_values values;
@@ -32,7 +32,7 @@ sh_status sh_get(const sh_access *access, void *values);
 /* Writes all variables of a call, or none of them after an error. */
 sh_status sh_set(const sh_access *access, const void *values);
 
-/* Returns the instance if all variables of a call can be set to these values now, else NULL after a message. */
+/* Returns the instance if all variables of a call can be set to `values` now, else NULL after a message. */
 sh_instance *sh_begin_set(const sh_access *access, const void *values);
 
 /* Returns the name of a type in the current version of FMI, for messages. */

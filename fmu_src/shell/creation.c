@@ -32,7 +32,7 @@ int sh_refuse_null(sh_instance *instance, const char *function, const char *argu
     return 0;
 }
 
-/* The library that allocated memory must also free it. So both memory functions of the importer are used, or none. */
+/* The library that allocated memory must also free it. So allocate and release are used together or not at all. */
 static int importer_allocates(const sh_importer *importer)
 {
     return importer->allocate != NULL && importer->release != NULL;

@@ -6,8 +6,8 @@
 
 #include "model.h"
 
-/* State of an instance in the state machine of FMI. Each state is one bit, so that a function can name the set of its
- * allowed states.
+/* State of an instance in the state machine of FMI. Each state is one bit, so that a function can name all states in
+ * which it may be called.
  */
 typedef enum {
     SH_INSTANTIATED = 1,
@@ -17,7 +17,7 @@ typedef enum {
     SH_ANY = 15
 } sh_state;
 
-/* Pointers that the importer passes when it creates an instance. Each of these pointers may be NULL. */
+/* Pointers that the importer passes when it creates an instance. Each pointer of the importer may be NULL. */
 typedef struct {
     void *environment;
     void (*logger)(void); /* logger of the importer; sh_deliver casts it to its real type */
@@ -33,7 +33,7 @@ struct sh_instance {
     double time;              /* current communication point [s] */
     double stop_time;         /* no step may end after this time; infinite without a stop time */
     double steps;             /* number of communication steps so far */
-    double previous_step;     /* length of the last step [s]; 0: no step yet */
+    double previous_step;     /* length of the last step [s]; 0 before the first step */
     int outputs_stale;        /* 1: a value was set after the outputs were computed */
     int parameters_unchecked; /* 1: a parameter was set after the last check */
     size_t slopes_end;        /* variables from this index on have input derivatives of 0 */
@@ -45,8 +45,8 @@ static inline int sh_is_parameter(const sh_variable *variable)
     return variable->role == SH_ROLE_FIXED || variable->role == SH_ROLE_TUNABLE;
 }
 
-/* Returns 1 if the variable may have this value, else 0 after a message. Only parameters have limits. An input that is
- * not finite is allowed, and makes the estimator skip ticks.
+/* Returns 1 if the variable may have this value, else 0 after a message. Only parameters have limits. An input may be
+ * infinite or NaN, which makes the estimator skip ticks.
  */
 int sh_accepts(sh_instance *instance, const sh_variable *variable, double value,
                const char *function);
@@ -71,7 +71,7 @@ static inline void sh_write(sh_instance *instance, const sh_variable *variable, 
     if (variable->type == SH_TYPE_REAL) {
         *(double *)place = value;
     } else {
-        /* The value fits into an int, unless the importer changed its array after the check. */
+        /* A value outside of int is only possible if the importer changed its array after the check. */
         *(int *)place = value >= INT_MAX ? INT_MAX : value > INT_MIN ? (int)value : INT_MIN;
     }
 }

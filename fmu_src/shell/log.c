@@ -6,7 +6,7 @@
 
 #include "simulation.h"
 
-/* All categories of messages. The first four belong to the values of sh_status, in the same order. */
+/* All categories of messages. The first four categories belong to the values of sh_status, in the same order. */
 static const struct {
     const char *name;
     unsigned category;

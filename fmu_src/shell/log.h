@@ -21,8 +21,8 @@ extern const char sh_special;
 void sh_deliver(const sh_instance *instance, sh_status status, const char *category,
                 const char *text);
 
-/* Converts names of categories to a bit set *found of SH_LOG_*, which is SH_LOG_ALL if count is 0. Unknown names are
- * ignored with a warning. The importer passes `handle`, which may be NULL.
+/* Converts names of categories to a bit set *found of SH_LOG_*, which is SH_LOG_ALL if count is 0. Unknown categories
+ * are ignored with a warning. The importer passes `handle`, which may be NULL.
  */
 sh_status sh_find_categories(void *handle, size_t count, const char *const categories[],
                              unsigned *found, const char *function);

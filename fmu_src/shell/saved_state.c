@@ -1,8 +1,8 @@
 /* Functions that save, restore and serialise the state of the FMU, for every version of FMI.
  *
  * A saved state is a block of bytes without pointers: a header, followed by the model's struct. A serialised state
- * consists of the same bytes. Version, GUID, length and checksum show whether a block is damaged or belongs to another
- * FMU.
+ * has the same bytes as a saved state. Version, GUID, length and checksum show whether a block is damaged or belongs to
+ * another FMU.
  */
 #include <stdint.h>
 #include <string.h>
@@ -11,7 +11,7 @@
 
 enum {
     GUID_LENGTH = 64,
-    STATE_VERSION = 23 /* raise it when a model's struct changes: the GUID only covers variables */
+    STATE_VERSION = 23 /* raise the version if a model's struct changes: the GUID may not change */
 };
 
 typedef struct {
@@ -100,11 +100,11 @@ static void read_header(sh_instance *instance, const void *block)
     instance->steps = header.steps;
     instance->previous_step = header.previous_step;
     instance->outputs_stale = header.outputs_stale != 0;
-    instance->parameters_unchecked = 1;        /* the next step will check the parameters */
+    instance->parameters_unchecked = 1;        /* the next step must check the parameters */
     instance->slopes_end = sh_fmu_model.count; /* the state may contain input derivatives */
 }
 
-/* Checks serialised bytes. Returns NULL if they are valid, else the defect as text, such as "is truncated". */
+/* Checks a serialised state. Returns NULL if the state is valid, else the defect as text, such as "is truncated". */
 static const char *defect_of_bytes(const void *bytes, size_t size)
 {
     const char *defect;
@@ -137,12 +137,12 @@ static int is_initialized(const sh_instance *shown)
     return shown->state == SH_STEP || (shown->state == SH_INITIALIZATION && !shown->outputs_stale);
 }
 
-/* Returns 1 if an instance can continue from a deserialised block, else 0 after a message. The check is necessary
- * because a manipulated block may have a valid checksum.
+/* Returns 1 if an instance can continue from a deserialised block, else 0 after a message. A check of values is
+ * necessary because a manipulated block may have a valid checksum.
  */
 static int is_sound(const sh_instance *instance, void *block, const char *function)
 {
-    sh_instance shown = *instance; /* an instance that uses the model in the block */
+    sh_instance shown = *instance; /* copy of the instance that uses the model in the block */
     size_t i;
 
     read_header(&shown, block);

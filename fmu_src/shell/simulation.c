@@ -114,8 +114,8 @@ sh_status sh_end_initialization(void *handle, const char *function)
     return SH_OK;
 }
 
-/* Derivatives of inputs are valid for one step. In the next step inputs are constant, unless the
- * importer sets derivatives again.
+/* Time derivatives of inputs are valid for one communication step. In the next step inputs are constant, unless the
+ * importer sets their derivatives again.
  */
 static void clear_input_derivatives(sh_instance *instance)
 {
@@ -157,9 +157,9 @@ sh_status sh_communication_step(void *handle, double t, double h, const char *fu
                   h);
         return SH_ERROR;
     }
-    /* An importer that adds up step lengths makes rounding errors in t. These errors have no effect, because ticks
-     * depend on the sum of all h. Another importer may pass an h that does not quite fit its times t. Then this step is
-     * a little longer or shorter than h, so that the step ends at t + h.
+    /* An importer that adds up step lengths makes rounding errors in t. Rounding errors of t have no effect, because
+     * ticks depend on the sum of all h. An importer may also pass an h that does not quite fit its times t. In this
+     * case, the step is made a little longer or shorter than h, so that the step ends at t + h.
      */
     length = h;
     late = t - instance->time;

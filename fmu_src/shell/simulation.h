@@ -61,7 +61,7 @@ sh_status sh_end_initialization(void *handle, const char *function);
 sh_status sh_communication_step(void *handle, double t, double h, const char *function);
 sh_status sh_terminate(void *handle, const char *function);
 
-/* Resets an instance to its state after sh_create, with all start values. The logged categories do not change. */
+/* Resets an instance to its state after sh_create with all start values. The logged categories remain the same. */
 sh_status sh_reset(void *handle, const char *function);
 
 /* Checks the constraints between parameters, if a parameter was set after the last check. */

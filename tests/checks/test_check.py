@@ -48,7 +48,7 @@ PROPOSED = {
     "torque 10 ms late": pytest.approx(0.010, abs=0.0005),
     "torque geared twice": 1.0,
 }
-"""The right value of each key for which a log can show it."""
+"""The right values of all keys whose right value a log can show."""
 
 
 @pytest.mark.parametrize("name", WRONG)
@@ -166,7 +166,7 @@ def test_a_link_that_is_locked_on_purpose_needs_no_column() -> None:
 
 
 def parameters(plant: Mapping[str, float], T: float) -> str:
-    """A configuration in rad and N.m for a joint whose motor data are wrong by some per cent."""
+    """A configuration with motor data that are wrong by some per cent, in rad and N.m."""
     return configured(
         f"samplePeriod = {T}",
         f"motor.B = {1.05 * plant['motor.B']}",
@@ -234,8 +234,8 @@ def test_single_samples_that_were_lost_are_counted() -> None:
 def test_a_lost_sample_of_a_counter_differs_from_one_that_wraps(
     sample: int, are_lost: bool
 ) -> None:
-    """GIVEN a 16-bit counter with a wrong value in place of its largest value `sample`, THEN this
-    sample counts as lost, unless the wrong value is one count more, after the wrap."""
+    """GIVEN a 16-bit counter in which a wrong value replaces the largest value `sample`, THEN the
+    sample counts as lost. A value that is one count more because of the wrap is not lost."""
     counts = knee_log()["motor_counts"]
     largest = int(np.argmax(counts))
     wrapped = np.mod(counts - counts[largest] + sample, 65_536)
@@ -295,7 +295,7 @@ def test_the_command(shell: Shell) -> None:
     assert (found["key"], found["proposed"]) == ("ports.theta.counts_per_turn", 4096)
     said = shell.refused("check knee.csv --config none.toml")
     assert said.startswith("sigmahat: error: none.toml: No such file")
-    # THEN identify and estimate report the same finding as check.
+    # THEN `identify` and `estimate` report the same findings as `check`.
     said = shell.run("identify knee.csv --config wrong.toml --dry-run")
     assert "ports.theta.counts_per_turn" in said
     assert shell.json("estimate knee.csv")["checks"]["wrong"] is False

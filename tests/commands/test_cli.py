@@ -186,7 +186,7 @@ def test_interrupt(name: str, seeds: str, delay: float, tmp_path: Path) -> None:
     time.sleep(delay)
     os.killpg(process.pid, signal.SIGINT)
     output, errors = process.communicate(timeout=30)
-    # If the signal arrives during an import, it ends Python directly; a shell reports this as 130.
+    # If SIGINT arrives during an import, it ends Python directly, which a shell reports as 130.
     assert process.returncode in (130, -signal.SIGINT)
     assert output == ""
     assert errors.strip() == "sigmahat: interrupted"

@@ -68,11 +68,10 @@ def test_better_than_the_paper_in_every_row_with_wrong_motor_data(runs: list[lis
 
 
 def test_finds_the_error_of_the_friction(runs: list[list[Row]]) -> None:
-    """From 0.3 Hz on, the AwAS estimates the error of D_theta within 10 % of this error. If B is
-    unknown too, no accuracy is required at 0.3 Hz, where inertia resembles friction. The tolerance
-    is 25 % at 20 Hz, because friction resembles a delay if the motor reverses every 25 ms. The
-    tolerance with Coulomb friction at 0.3 Hz is also 25 %, because estimates of 20 seeds have a
-    standard deviation of 12 %."""
+    """From 0.3 Hz on, FilteredRegression reduces an error of D_theta of the AwAS to 10 %. If B is
+    unknown too, no accuracy is required at 0.3 Hz, where inertia resembles friction. At 20 Hz, 25 %
+    may remain, because friction resembles a delay if the motor reverses every 25 ms. At 0.3 Hz with
+    Coulomb friction, 25 % may remain, because D_theta varies by 12 % between seeds."""
     for row in (row for run in runs for row in run):
         motion = labels.motion(row.joint)
         if motion not in FREQUENCIES[1:]:
@@ -89,7 +88,7 @@ def test_finds_the_error_of_the_friction(runs: list[list[Row]]) -> None:
 @pytest.mark.slow("many seeds")
 def test_start_up_with_exact_motor_data() -> None:
     """GIVEN an estimator without columns for model errors, THEN the error of the start-up is near
-    the theoretical lower bound. With these columns, the error of the start-up may be larger."""
+    the theoretical lower bound. With columns for model errors, this error may be larger."""
     (table1,) = (joint for joint in JOINTS if joint.scenario.name == "table1")
     unknown, nominal = compare([without_misfits(table1)], range(1, 21), processes=2)
     assert unknown.error(REGRESSION) <= 0.30

@@ -47,7 +47,7 @@ def test_the_torque_is_measured_late_or_early(late: float) -> None:
     experiment = replace(short(SEA_1K), torque=sines, late=late, rest=0.1)
     t = times(1e-3, 0.499)
     expected = sines(t - late - 0.1) * (t - late >= 0.1)
-    away = np.abs(t - late - 0.1) > 2e-3  # not at the start of the torque
+    away = np.abs(t - late - 0.1) > 2e-3  # not near the step of the torque
     tau = motion.run(experiment).measured["tau"]
     assert len(tau) == 500
     # The torque between two samples is interpolated linearly, which approximates the sine.
@@ -120,8 +120,8 @@ def test_the_score_in_closed_form() -> None:
     assert found.figures["claim"] == pytest.approx(
         100 * math.sqrt((0.01**2 + 0.01**2 + 0.2**2 + 0.02**2) / 4)
     )
-    assert found.figures["coverage"] == 50  # instants 1 and 3 of 4
-    # Only instant 2 is dangerous: it is wrong and its standard deviation is below 2 %.
+    assert found.figures["coverage"] == 50  # instants 1 and 3 of 4 are inside
+    # Only instant 2 is dangerous: its estimate is wrong with a standard deviation below 2 %.
     assert found.figures["dangerous"] == 25
     assert (found.figures["confident"], found.figures["wrong"]) == (75, 25)
 
@@ -164,7 +164,7 @@ def test_what_confident_means() -> None:
     assert together.figures["coverage"] >= 90
 
 
-# What the command prints, writes and draws
+# Printed text, files and figures of the command
 
 NAMES = ("none", "uneven Coulomb friction 20 %", "n = 1, too small")
 

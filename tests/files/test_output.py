@@ -1,4 +1,4 @@
-"""An output folder is written completely or remains unchanged. Digests of files and folders."""
+"""An output folder is written completely or not at all. SHA-256 digests of files and folders."""
 
 import hashlib
 import shutil

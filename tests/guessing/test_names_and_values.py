@@ -114,7 +114,7 @@ def test_a_velocity_tells_the_unit_of_its_position(m: Motion) -> None:
     }
     ports = only(columns).ports
     assert [ports[name].unit for name in ("theta", "q")] == ["turn", "turn"]
-    # The log of a soft joint shows only an approximate gear ratio, so the user must provide it.
+    # The log of a soft joint shows only an approximate gear ratio, so the user must set the ratio.
     assert ports["theta"].gear_ratio is None
     assert ports["theta"].moves == pytest.approx(GEAR, rel=0.05)
     assert ports["tau"].sign == -1
@@ -130,7 +130,7 @@ def test_signs_and_zeros(m: Motion) -> None:
 
 def test_a_hand_on_the_link_leaves_the_sign_of_the_torque_open() -> None:
     """GIVEN a motor that holds its position by control, WHEN a hand moves the link, THEN `init`
-    derives no sign of the torque, because the motor torque has the opposite power in this case."""
+    derives no sign of the torque. The power of the motor torque is negative in this case."""
     log = dict(log_by_hand(0.05))
     assert np.mean(log["current"] * np.gradient(log["motor_counts"])) < 0
     port = only(log).ports["tau"]

@@ -1,7 +1,7 @@
 """Tests of `sigmahat init` with logs in many formats: few edits lead to the right stiffness.
 
-The tests simulate the joints independently of the package. After `init`, they add values of the
-data sheet and edit at most two other keys of the configuration.
+The tests simulate joints independently of the package. After `init`, a test adds values of the data
+sheet to the configuration and edits at most two other keys.
 """
 
 from collections.abc import Callable, Mapping
@@ -139,7 +139,7 @@ class Style:
     file: str  # the suffix selects the file format
     log: Callable[[Motion], Columns]
     ports: Mapping[str, tuple[str, str | None]]  # expected column and unit of each port
-    sheet: Mapping[str, Any]  # keys to set to values of the data sheet
+    sheet: Mapping[str, Any]  # keys to set to data sheet values
     edits: Mapping[str, Any] = field(default_factory=dict)  # other keys to edit
     joint: str | None = None  # for --joint
 
@@ -201,7 +201,7 @@ STYLES = [
 
 
 def edited(text: str, values: Mapping[str, Any]) -> str:
-    """Sets keys of a configuration to new values. Keys of [parameters] are given without prefix."""
+    """Sets keys of a configuration to new values. Keys in [parameters] have no prefix."""
     document = tomlkit.parse(text)
     for key, value in values.items():
         place = key.split(".") if key.startswith("ports.") else ("parameters", key)

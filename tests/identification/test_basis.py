@@ -15,7 +15,7 @@ from sigmahat.logs.estimate import estimate
 from sigmahat.logs.log import LogInMemory
 
 COUNTS = 2**17
-STIFFER = 4.0  # relative change of the stiffness with the deformation [1/rad]
+STIFFER = 4.0  # relative slope of the stiffness over the deformation [1/rad]
 CONFIGURATION = configured(
     *(f"samplePeriod = {T}", f"motor.gamma = {GEAR}", "motor.B = 1e-4", "motor.D_theta = 1e-3"),
     *("prior.B = 1.0", "prior.D_theta = 1.0", "prior.torque_gain = 0.0", "rls.m = 1"),
@@ -35,7 +35,7 @@ def log_of(stiffer: float, seed: int) -> LogInMemory:
 def within(log: LogInMemory, path: Path, stiffer: float) -> tuple[Array, Array]:
     """Relative error and standard deviation of the stiffness in the measured range.
 
-    The function completes the configuration by `identify` before it estimates.
+    `identify` completes the configuration before the estimate.
     """
     write(identify(log, read_configuration(path)), path)
     (branch,) = estimate(log, read_configuration(path)).curve.branches
@@ -78,7 +78,7 @@ def test_a_linear_spring_hardly_loses(path: Path) -> None:
 
 @pytest.mark.parametrize(("stiffer", "is_named"), [(0.0, False), (STIFFER, True)])
 def test_check_names_an_asymmetric_spring(stiffer: float, is_named: bool) -> None:
-    # THEN `check` does not name the spring any more once the polynomial uses all powers.
+    # THEN `check` no longer reports an asymmetric spring once the polynomial has all powers.
     for text, names in (("", is_named), ("rls.symmetric = false\n", False)):
         found = check(log_of(stiffer, 3), in_memory(CONFIGURATION + text)).findings
         named = [each for each in found if each.kind is Kind.ASYMMETRY]

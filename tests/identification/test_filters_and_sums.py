@@ -59,20 +59,20 @@ def piece(count: int, seed: int) -> Signals:
 def test_a_fit_to_sums_is_a_fit_to_rows() -> None:
     pieces = [piece(9001, 1), piece(4400, 2)]
     found = fit(equations(pieces, T, GAMMA, FORM))
-    # GIVEN all rows of the equations, instead of their sums
+    # GIVEN a fit to all rows of the equations instead of a fit to sums
     every = [each for p in pieces for each in rows(p, T, GAMMA, FORM, units(pieces))]
     y, X, Z = (
         np.concatenate([np.concatenate(part) for part in parts])
         for parts in ([e.y for e in every], [e.X for e in every], [e.Z for e in every])
     )
     p = np.linalg.solve(Z.T @ X, Z.T @ y)
-    # THEN both fits are equal, except for the rounding error of the sums Z'X.
+    # THEN both fits are equal, except for the rounding error of the sums Z'X
     scale = np.sqrt(np.mean(X**2, axis=0))
     rounding = 100 * np.finfo(np.float64).eps * np.linalg.cond((Z / scale).T @ (X / scale))
     assert rounding < 1e-5
     assert list(found.value.values()) == pytest.approx(p.tolist(), rel=rounding)
     assert found.squares.sum() == pytest.approx(np.sum((y - X @ p) ** 2), rel=1e-6)
-    # AND the covariance follows from sums of Z times error over blocks of a quarter of a second.
+    # AND the covariance follows from sums of Z times error over blocks of a quarter of a second
     scores = []
     for each in every:
         errors = each.Z * (each.y - each.X @ p)[..., None]

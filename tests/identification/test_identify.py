@@ -147,8 +147,8 @@ def test_values_are_written_where_they_stand(parameters: str, found: Found, path
 
 
 def cannot_tell(found: Identified) -> Identified:
-    """Returns the result without motor data, except for an interval of tau_coulomb. The user has
-    not set B, so the default value of the FMU applies."""
+    """Returns the result of `identify` with undetermined motor data. Only tau_coulomb has a finite
+    interval. The user has not set B, so the default value of the FMU applies."""
     unknown = {name: replace(q, determined=False) for name, q in found.quantities.items()}
     unknown["B"] = replace(unknown["B"], value=math.nan, half_width=math.inf)
     unknown["tau_coulomb"] = Quantity(0.01, 0.05, "N.m", determined=False)
@@ -169,7 +169,7 @@ def test_what_is_not_determined_is_never_exact(
     parameters: str, kept: dict[str, float], found: Found, path: Path
 ) -> None:
     path.write_text(f'[ports.q]\ncolumn = "q"\n{parameters}\n')
-    for _ in range(2):  # the second run reads the file of the first run
+    for _ in range(2):  # run 2 reads the file of run 1
         written = write(cannot_tell(found[1.0]), path)
         read = read_configuration(path).parameters
         wide = {"prior.B": 1000.0, "prior.D_theta": 1.0, "prior.tau_coulomb": 0.06, **kept}
@@ -250,7 +250,7 @@ def test_torque_constant(shell: Shell) -> None:
 
 def test_a_value_instead_of_one_that_is_not_known_stays(found: Found, path: Path) -> None:
     # GIVEN a file in which `identify` has marked B as not known
-    # WHEN a user changes B and prior.B but no comments, THEN the next run keeps both values.
+    # WHEN a user changes B and prior.B but no comments, THEN `identify` keeps both values
     path.write_text('[ports.q]\ncolumn = "q"\n')
     write(cannot_tell(found[1.0]), path)
     text = path.read_text()
@@ -263,7 +263,7 @@ def test_a_value_instead_of_one_that_is_not_known_stays(found: Found, path: Path
 
 
 def test_a_torque_of_another_scale_does_not_replace_a_known_inertia() -> None:
-    """GIVEN a torque that is too small by a factor of 100, and a motor.B with an error of 10 %."""
+    """GIVEN a torque that is 100 times too small, and a motor.B with a prior deviation of 10 %."""
     log = knee_log()
     wrong = RIGHT.replace("torque_constant", "gear_ratio = 100\ntorque_constant")
     found = identified(log, wrong)
@@ -307,7 +307,7 @@ def test_one_sine_of_a_free_load_does_not_tell_its_inertia_from_the_motors(
 @pytest.mark.parametrize("factor", [1.0, 2.0])
 def test_a_stiffness_that_changes_in_the_log_does_not_look_like_inertia(factor: float) -> None:
     def stiffness(t: Array) -> Array:
-        """Factor that makes the stiffness constant in spite of the lever arm, until it changes."""
+        """Stiffness factor that compensates the moving lever arm, and that changes at t = 12 s."""
         steady: Array = (0.07 / (0.07 + 0.02 * np.sin(0.9 * t))) ** 2
         return steady * np.where(t < 12.0, 1.0, factor)
 
@@ -332,7 +332,7 @@ def test_the_zero_is_where_the_spring_has_no_torque(path: Path) -> None:
     assert "ports.q.zero" in write(found, path)
     q = convert("q", read_configuration(path).ports["q"], log["q"])
     assert np.max(np.abs(q - true)) <= zero.half_width
-    # THEN a second run does not change the zero.
+    # THEN a second run of `identify` does not change the zero of the encoder.
     again = identified(log, path.read_text())
     assert again.zero == 0 and "ports.q.zero" not in write(again, path)
 

@@ -89,7 +89,7 @@ def test_the_bands_hold_the_truth_as_often_as_they_say() -> None:
             z = (branch.sigma - stiffness) / branch.sigma_std
             scores.append(float(np.mean(z[branch.within] ** 2)))
     # Of 20 logs, 19 should have a torque gain within 1.96 standard deviations.
-    # The probability that fewer than 16 torque gains are within this limit is only 0.3 %.
+    # The probability that fewer than 16 of 20 gains are within 1.96 deviations is only 0.3 %.
     assert np.mean(inside["sigma"]) >= 0.8
     assert np.mean(inside["tau_e"]) >= 0.8
     # The normalised errors of the stiffness are hardly larger than the normalised torque gains.
@@ -106,7 +106,7 @@ def awas(tmp_path_factory: pytest.TempPathFactory) -> Awas:
 
 
 def test_the_band_is_what_the_estimator_said_at_its_last_sample(awas: Awas) -> None:
-    """The curve has a branch at the last set-point, which equals the last output of the FMU."""
+    """The branch of the curve at the last set-point equals the last estimate of the FMU."""
     result, _, folder = awas
     end = json.loads((folder / "joint.json").read_text())["at_the_end"]
     branch = min(result.curve.branches, key=lambda b: abs(b.set_point - end["set_point"]))
@@ -285,8 +285,8 @@ def test_more_powers_come_near_a_knee(low: int) -> None:
 
 
 def test_the_estimator_has_columns_for_the_powers_near_a_knee() -> None:
-    """GIVEN two knees, and one power of the set-point more than `identify` writes, THEN the
-    estimator accepts these parameters."""
+    """GIVEN two knees of a spring and five powers of the set-point, THEN the estimator accepts
+    these parameters."""
     many = replace(OF_KNEE, powers_of_set_point=[0, 1, 2, 3, 4], eta=[[1.0] * 5] * 4)
     torque, slope = many.at(ANGLES, SETTINGS)
     start = start_of(with_knees(many, ANGLES, SETTINGS, torque, slope + (ANGLES > 0.1)))

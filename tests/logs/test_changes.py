@@ -27,7 +27,7 @@ def test_a_step_has_its_time_its_size_and_its_mark(shell: Shell) -> None:
     assert change["relative"] == pytest.approx(-0.5, abs=0.05)
     words = f"the stiffness changed by {100 * change['relative']:+.0f} % at {change['t [s]']:.4g} s"
     assert words in json.loads(Path("out/estimate.json").read_text())["notes"]
-    # THEN the table contains no coefficients, and the report marks the same time.
+    # THEN the table of estimates has no coefficients, and the report marks the time of the change
     assert not any("eta[" in name for name in read_estimate(Path("out")).column_names)
     shell.run("report out --quiet")
     with opened(Path("out/report.html").absolute()) as page:
@@ -48,7 +48,7 @@ def test_the_size_needs_a_confident_estimate_before_and_after() -> None:
         "phi": np.full(8, 2.0),
         "setPoint": np.full(8, 2.0),
     }
-    # THEN the restart at 2.5 s belongs to the change at 2 s, which the estimate had not followed.
+    # THEN the restart at 2.5 s belongs to the change at 2 s, as the estimate had not adapted yet
     for part in (slice(0, 5), slice(5, 8)):
         changes.add({name: values[part] for name, values in outputs.items()})
     first, second = changes.found
@@ -71,6 +71,6 @@ def test_deformations_of_before_the_last_change_are_not_in_the_data() -> None:
     assert list(since_change(outputs)["phi"]) == list(range(6))
     outputs["change_age"][:] = -1.0
     assert list(since_change(outputs)["phi"]) == list(range(6))
-    # WHEN the change was in an earlier log, THEN all samples of this log are after the change.
+    # WHEN the stiffness changed in an earlier log, THEN all deformations of the new log are used
     outputs["change_age"][:] = np.arange(7.0, 13.0)
     assert list(since_change(outputs)["phi"]) == list(range(6))

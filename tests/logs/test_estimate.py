@@ -64,7 +64,7 @@ def test_replay_is_the_cosimulation(
 
 
 def test_mat_of_version_7_3(log: Columns, tmp_path: Path) -> None:
-    # GIVEN a file of MATLAB: HDF5 after 512 bytes, vectors as rows of a matrix, and a structure
+    # GIVEN a MATLAB file with HDF5 after 512 bytes, vectors as rows of a matrix, and a structure
     path = tmp_path / "log.mat"
     with h5py.File(path, "w", userblock_size=512) as file:
         for name, values in log.items():

@@ -70,7 +70,7 @@ def learned(original: Path, shell: Shell) -> Shell:
 )
 def test_two_logs_are_one_log_with_a_gap(configuration: str, ticks: int, log: Columns) -> None:
     """GIVEN a log in two parts, whose ports may differ, THEN the results are exactly those of one
-    log with a gap. Paper2011 needs a gap of 2 / K_I = 6.7 ms, so that Paper2011 restarts."""
+    log with a gap. The method Paper2011 only restarts after a gap of 2 / K_I = 6.7 ms."""
     write_halves(log, configuration)
     lost = np.full(ticks, np.nan)
     columns = {n: np.concatenate([v[:HALF], lost, v[HALF:]]) for n, v in log.items()}
@@ -107,7 +107,7 @@ def test_what_was_learned_from_is_said_and_handed_on(learned: Shell) -> None:
     sheet = json.loads(Path("second/joint.json").read_text())
     assert [each["file"] for each in state["logs"]] == ["first.parquet", "second.parquet"]
     assert sheet["logs"] == state["logs"]
-    # THEN a third estimate continues from both logs, even if it replaces these results.
+    # THEN a third estimate continues from both logs, even if it overwrites the old results
     result = learned.json(f"{SECOND} --start-from second")
     assert result["learned_from"] == ["first.parquet", "second.parquet"]
 

@@ -1,6 +1,6 @@
 """Estimates for three axes of an industrial robot, made like a user would. See docs/robot.md.
 
-An issue of the project defined these requirements. All intervals have a confidence of 95 %.
+An issue of the project defined the required accuracy. All intervals have a confidence of 95 %.
 """
 
 from collections.abc import Callable

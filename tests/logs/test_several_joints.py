@@ -55,7 +55,7 @@ def test_from_the_log_to_one_report(shell: Shell) -> None:
     assert "hip: Stiffness against deformation" in page
     assert "knee: Stiffness against deformation" in page
     assert "leg.csv with leg.toml; sigmahat " in page
-    # THEN `validate` reports for both joints that their results come from this same log.
+    # THEN `validate` reports for both joints that their results come from the same log
     said = shell.run("validate leg.csv --with leg.toml", 1)
     assert said.count("learned before from leg.csv") == 2
     # THEN a joint selected by name gives the same estimate as with its own configuration.

@@ -22,7 +22,7 @@ from sigmahat.logs.readers.formats import open_log
 from strange_files import TRIALS, Trial, complaint_of
 
 EXAMPLES = int(os.environ.get("SIGMAHAT_STRANGERS", "40"))
-"""Number of examples. With SIGMAHAT_STRANGERS set, each run tests other random examples."""
+"""Number of random examples. If SIGMAHAT_STRANGERS is set, each test run has other examples."""
 CONFIGURED = CONFIGURATION.replace("motor.B", "rls.n = 3\nmotor.B")
 
 

@@ -31,7 +31,7 @@ INPUTS = ("theta", "q", "theta_c", "tau", "tau_e_sensor")
 
 
 class Tool:
-    """A library of the external functions, each compiled alone, and calls like the block's."""
+    """A library of the external C functions, with methods that call these like a Modelica block."""
 
     def __init__(self, package: Path, folder: Path, fmu: Fmu) -> None:
         self.fmu, self.sources = fmu, package / "Resources" / "C-Sources"
@@ -64,7 +64,7 @@ class Tool:
         self.library.sigmahat_standard_normal.restype = ctypes.c_double
 
     def compiled(self, folder: Path, text: str, *flags: str) -> Path:
-        """Compiles a translation unit with this text and returns its object file."""
+        """Compiles a C source text and returns the object file."""
         source = Path(tempfile.mkdtemp(dir=folder)) / "unit.c"
         source.write_text(text)
         search = (f"-I{self.sources}", f"-I{DRIVERS}")
@@ -72,7 +72,7 @@ class Tool:
         return source.with_suffix(".o")
 
     def messages(self) -> str:
-        """Error messages since the last call of this function."""
+        """Returns the error messages since the last call of `messages`."""
         buffer = ctypes.c_char.in_dll(self.library, "tool_messages")
         text = ctypes.string_at(ctypes.addressof(buffer)).decode()
         buffer.value = b"\0"
@@ -82,7 +82,7 @@ class Tool:
         """Returns the arguments of the constructor for parameters with their names in the FMU."""
 
         def number(name: str) -> float:
-            # The block passes a number instead of a parameter that it does not have.
+            # For a parameter that the Modelica block does not have, the block passes a number.
             known = name in parameters
             return self.fmu.number(name, parameters[name]) if known else float(name)
 
@@ -104,8 +104,8 @@ class Tool:
     ) -> dict[str, NDArray[Any]]:
         """Returns the outputs of a tick for each row of samples, which has time and inputs.
 
-        A second object with other inputs makes a tick in between. With `before`, each tick is
-        repeated: first with the inputs of `before`, then with those of `samples`.
+        A second object with other inputs makes a tick in between. If `before` is given, each tick
+        is made twice, first with the inputs `before`.
         """
         objects = [ctypes.c_void_p(self.new(parameters)) for _ in range(2)]
         types: dict[str, Any] = {"double": ctypes.c_double, "int": ctypes.c_int}
@@ -144,7 +144,7 @@ def gcc(*arguments: str | Path) -> None:
 
 @pytest.fixture(scope="module")
 def tool(build: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Tool]:
-    """The compiled functions of the package in the archive."""
+    """The compiled C functions of the Modelica package in the released archive."""
     folder = tmp_path_factory.mktemp("package")
     with ZipFile(build / "release" / "sigmahat-modelica.zip") as archive:
         archive.extractall(folder)
@@ -175,7 +175,7 @@ def otherwise(setting: Mapping[str, Any]) -> dict[str, Any]:
             changed[name] = (value or 1e-3) * (1 + 0.02 * math.sin(number))
         else:
             changed[name] = value
-    del changed["encoder.theta_c"]  # it has no effect, so the block omits it
+    del changed["encoder.theta_c"]  # without effect, so not in the block
     return {**changed, **setting}
 
 

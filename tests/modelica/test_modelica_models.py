@@ -37,7 +37,7 @@ SPECIAL = {
     "confident": "true",
     "valid": "theta < 10",
 }
-"""Values of some outputs of the test function. Any other output equals its own index."""
+"""Values of some outputs of the test function. Each other output equals its index in the list."""
 
 
 def outputs() -> list[str]:
@@ -182,7 +182,7 @@ def outputs_of_fmu(
 def run(
     plant: str, inputs: Mapping[str, Sine], start: Mapping[str, float], duration: float
 ) -> tuple[Series, dict[str, NDArray[np.float64]]]:
-    """Simulates FMU and Modelica model of a plant without noise and returns their outputs."""
+    """Simulates the FMU and the Modelica model of a plant without noise; returns both outputs."""
     recorded = outputs_of_fmu(plant, inputs, start, duration)
     equations = []
     for name, s in inputs.items():

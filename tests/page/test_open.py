@@ -24,7 +24,7 @@ def by_hand(text: str) -> str:
 
 
 def fill_in(hand: Hand) -> None:
-    """Makes the same edits on the web page, with one typing error."""
+    """Edits the configuration on the web page as in by_hand(), with one typing error."""
     hand.types("ports.theta.counts_per_turn", "4096")
     hand.types("ports.theta.gear_ratio", "1OO")
     hand.sees("ports.theta.gear_ratio: expected a number, got '1OO'")
@@ -34,7 +34,7 @@ def fill_in(hand: Hand) -> None:
 
 @pytest.mark.slow("two browsers, five checks and curves, an identification")
 def test_from_an_empty_configuration_to_the_results(shell: Shell) -> None:
-    """GIVEN edits in one browser window, THEN a second, narrow and dark window shows them."""
+    """GIVEN edits in one browser window, THEN a second, narrow and dark window shows the edits."""
     write_log(knee_log(), Path("knee.csv"))
     with served("knee.csv", folder=Path()) as page:
         with opened(page.address) as first, opened(page.address, 400, dark=True) as second:
@@ -57,7 +57,7 @@ def test_from_an_empty_configuration_to_the_results(shell: Shell) -> None:
             low, high = middle["interval [N.m/rad]"]
             assert low < 1000 < high
             other.sees(f"{middle['sigma [N.m/rad]']:.4g} {low:.4g} to {high:.4g}")
-            assert "phi^11" not in hand.text()  # `identify` has not chosen such orders
+            assert "phi^11" not in hand.text()  # nobody has chosen this power
             written = tomlkit.parse(Path("knee.toml").read_text()).unwrap()
             hand.presses("estimate")  # also runs identify
             hand.sees("Results: ")

@@ -50,8 +50,8 @@ def test_motions_that_nothing_was_tuned_on(c: Library) -> None:
 def test_motor_that_turns_at_the_start(
     c: Library, period: float, velocity: float, friction: float
 ) -> None:
-    """GIVEN a motor that turns at the start [rad/s], THEN the error hardly exceeds the error of an
-    estimator that waits for 12/w after the first row, with any sample period."""
+    """GIVEN a motor with a `velocity` at the start [rad/s], THEN the error is hardly larger than
+    with an estimator that waits for 12/w after the first row, where w is the filter bandwidth."""
     t = times(period, 1.0)
     torques = np.column_stack([0.3 * np.sin(2 * np.pi * t), 8 * np.sin(0.2 * np.pi * t), 0 * t])
     start = {"initial.theta_dot": velocity, "initial.q_dot": velocity}
@@ -66,7 +66,7 @@ def test_motor_that_turns_at_the_start(
 
 # In slow motions with a noisy torque, the estimator must not mistake noise for friction.
 # The lower bound of the standard deviation is the van Trees bound (Cramer-Rao with priors).
-# The bound comes from a regression with the same columns, but without noise in the columns.
+# A regression with the estimator's columns, but without noise in the columns, gives the bound.
 # The regression has no column for a delay, which would contain the derivative of the noise.
 
 TRUE = ("theta", "q", "theta_c", "tau", "tau_e", "sigma")

@@ -19,7 +19,7 @@ from sigmahat.plotting.figure import save
 from sigmahat.runs.metrics import Indices
 
 ROWS = ["MODEL", "SENSOR", "RESIDUAL", "MODEL-measured"]
-# One scenario of each kind, and the figures that are drawn for this scenario.
+# One scenario of each kind, and the figures that are drawn for each scenario.
 DRAWN = [
     (scenario, name)
     for scenario in ("table1", "experiment", "single-hardening", "antagonistic")
@@ -81,7 +81,7 @@ def test_mean_and_interval_over_seeds() -> None:
 
 
 def test_index_that_is_not_defined_is_a_dash_and_null() -> None:
-    """GIVEN a stiffness from SENSOR that is 0 at first, THEN the index is undefined."""
+    """GIVEN a stiffness of 0 from SENSOR at the start, THEN its relative error is undefined."""
     result = one_seed("experiment")
     whole = table(result).split("\n\n")[1]
     cells = {row[0]: row[1:] for row in (re.split("  +", x) for x in whole.splitlines())}

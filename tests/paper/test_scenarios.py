@@ -44,7 +44,7 @@ def test_noise_differs_between_seeds_and_nothing_else_does() -> None:
 
 
 def test_constant_factors_show_what_the_enhanced_one_is_for() -> None:
-    """Figure 8 of the paper: a small factor converges too slowly, and a large factor diverges."""
+    """Figure 8 of the paper: RLS with a small constant factor is slow; a large factor diverges."""
     recording = one_seed("table1").recording
     error = {
         series.parameters["rls.a"]: np.abs(series["sigma"] / recording.plant["sigma"] - 1)

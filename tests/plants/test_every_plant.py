@@ -28,7 +28,7 @@ def test_the_torques_of_a_large_robot_are_accepted(name: str) -> None:
             assert fmu.step(k * 1e-3, 1e-3) == OK, fmu.messages
 
 
-# A plant can add a sine to the torque of each motor, so that it moves without a signal source.
+# Plants can add a sine to the torque of each motor, so that they move without a signal source.
 
 
 @pytest.mark.parametrize("name", PLANTS)
@@ -144,7 +144,7 @@ def test_noise_in_steps_that_do_not_fit_its_period() -> None:
 
 
 def test_noise_does_not_depend_on_a_last_step_of_a_moment() -> None:
-    """GIVEN a tiny last step, like that of OMSimulator if its time has a rounding error."""
+    """GIVEN a tiny last step, as OMSimulator makes it after rounding errors of its time."""
     with FMI2("AwasPlant").initialise({"noise.tau_variance": 1.0}) as fmu:
         t = 0.0
         for _ in range(2000):
@@ -155,13 +155,13 @@ def test_noise_does_not_depend_on_a_last_step_of_a_moment() -> None:
         assert t != 2.0
         assert fmu.step(t, 1e-13) == OK
         assert fmu.get("tau_measured") == before
-        # The tiny step does not shift the following noise samples.
+        # THEN the tiny step does not shift the times of later noise samples.
         assert fmu.step(t + 1e-13, 1e-3) == OK
         assert fmu.get("tau_measured") == normals(1)[2001, 0]
 
 
 def test_a_scenario_draws_noise_at_its_own_sampling_times() -> None:
-    """GIVEN noise with its own sample period, THEN its samples do not depend on the step size T."""
+    """GIVEN noise with a sample period, THEN the noise samples do not depend on the step size T."""
     table1 = scenario("table1")
     plant = replace(
         table1.plant, start={"noise.tau_variance": 1.0}, inputs={}, record=["tau_measured"]

@@ -62,7 +62,7 @@ def test_encoders_round_to_the_nearest_count(counts: float) -> None:
 
 
 def test_a_jump_of_the_torque_is_stepped_over() -> None:
-    """GIVEN a dead zone at whose edge a damping torque begins that exceeds all other torques."""
+    """GIVEN a spring with a dead zone, at whose edge the torque jumps because of damping."""
     h, steps, gap, damping, k = 1e-3, 20, 1e-3, 0.1, 150.0
     M, D_q, B, D, gamma = 0.1, 0.15, 2.3e-5, 1e-3, 50.0
 
@@ -77,7 +77,7 @@ def test_a_jump_of_the_torque_is_stepped_over() -> None:
     found = run_plant(
         "RealJointPlant", ("tau", "tau_ext"), h, np.zeros((steps + 1, 2)), start, names
     )
-    # The link moves freely with viscous friction until it has crossed the gap.
+    # The link moves freely with viscous friction until it has crossed the dead zone.
     at_edge = np.array([gap, 0.0, 1.0 - D_q / M * gap, 0.0])
     t_edge = -M / D_q * math.log(at_edge[2])
     states = solution(engaged, lambda _: (), at_edge, h * steps - t_edge)

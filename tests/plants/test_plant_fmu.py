@@ -68,7 +68,7 @@ def test_noise_is_that_of_the_seed(fmu: Path) -> None:
     first, again, other = (run(fmu, seed)["measured"][1:] - 2.0 for seed in (1, 1, 2))
     np.testing.assert_array_equal(first, again)
     assert not np.any(first == other)
-    assert np.std(first) == pytest.approx(0.1, rel=0.15)  # 500 samples have an error of 3 %
+    assert np.std(first) == pytest.approx(0.1, rel=0.15)  # with 500 samples, the error is 3 %
 
 
 def test_description_says_what_the_equations_are(fmu: Path) -> None:

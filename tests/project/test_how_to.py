@@ -46,7 +46,7 @@ def executed(page: str) -> dict[str, Any]:
 def test_the_commands_of_the_page_on_c_masters_work(tmp_path: Path) -> None:
     (commands,) = blocks("c-master.md", "sh")
     (tmp_path / "examples").symlink_to(REPOSITORY / "examples")
-    # The python3 of this test has FMPy.
+    # The page's command python3 must be the Python of the test, which has FMPy.
     environment = {
         "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}",
         "FMU": str(sigmahat.fmu("StiffnessEstimator")),
@@ -156,13 +156,13 @@ def test_a_copy_without_enumerations_is_the_same_fmu(page: dict[str, Any], tmp_p
 
 
 def test_fmpy_page_gives_the_results_of_other_loops(page: dict[str, Any]) -> None:
-    """GIVEN a simulation of the plant by sigmahat, and an estimator without an FMU."""
+    """The page gives the results of a plant simulated by sigmahat and an estimator without FMU."""
     inputs = ("tau", "tau_c")
     torques = np.column_stack([page["torques"][name] for name in inputs])
     plant = run_plant("AwasPlant", inputs, T, torques, record=["sigma"], held=True)
     np.testing.assert_allclose(page["plant"]["sigma"], plant["sigma"], rtol=1e-9)
     measured = {name: page["log"][name] for name in page["measured"]}
-    # The outputs of the tick at t_k are available after the step.
+    # An FMU provides the outputs of the tick at t_k only after the step from t_k.
     ticks = sigmahat.Estimator({}).run(**measured)["sigma"][:-1]
     np.testing.assert_array_equal(page["estimate"]["sigma"][1:], ticks)
     assert ticks[-1] > 0
@@ -182,7 +182,7 @@ def test_fmpy_page_tunable_takes_effect_at_the_next_tick(page: dict[str, Any]) -
 def test_fmpy_passes_zeros_to_the_first_tick_of_the_system_and_is_else_exact(
     page: dict[str, Any],
 ) -> None:
-    """The page gives exactly the results of sigmahat with a plant FMU and no estimator FMU."""
+    """The simulation on the page equals a plant in sigmahat and an estimator without an FMU."""
     system = page["system"]
     still, record = np.zeros((len(system), 1)), ("sigma", *page["measured"].values())
     plant = run_plant("AwasPlant", ["tau"], T, still, SIGNALS, record, t=system["time"])

@@ -1,4 +1,4 @@
-"""Speed in processor instructions: time-critical functions need as many as the table allows."""
+"""Time-critical functions need at most as many processor instructions as a table allows."""
 
 import os
 import platform

@@ -1,4 +1,4 @@
-"""Files and functions that the documentation names exist. The build of the site checks links."""
+"""Files and functions that the documentation names exist. Sphinx checks the links."""
 
 import re
 from functools import cache

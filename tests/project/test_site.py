@@ -1,7 +1,7 @@
 """Tests of the HTML documentation: its API reference, and its appearance in a browser.
 
-The build of the documentation fails if Sphinx reports a warning. Examples are a page outside of the
-navigation and a broken link.
+The build of the documentation fails if Sphinx reports a warning, for example about a page outside
+of the navigation or about a broken link.
 """
 
 import re

@@ -96,7 +96,7 @@ def test_vdmcheck2_finds_no_error(name: str, released: Path, build: Path, tmp_pa
             archive.extractall(tmp_path)
     fmu = released.resolve() / f"{name}.fmu"
     text = controllers.run(need("java"), "-jar", "vdmcheck2.jar", fmu, cwd=tmp_path)
-    # VDMCheck2 reports missing files that only FMI 3 requires, and not FMI 2.0.
+    # VDMCheck2 reports files as missing that FMI 3 requires, but not FMI 2.0.
     lines = [line for line in text.splitlines() if not line.startswith("FMU has no ")]
     assert lines[-1] == "No errors found."
     assert all(line == "Checking modelDescription.xml" for line in lines[:-1]), text

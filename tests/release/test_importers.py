@@ -63,7 +63,7 @@ def assert_same_in(
     run, program = run_of(fmu), folder / "binaries" / Path(binary).with_name("master.exe")
     fmpy.extract(str(fmu), unzipdir=str(folder))
     # The compiler needs minutes to build its C library, and then stores the result in a cache.
-    # The test uses this cache, as it compiles with -s and outside of the sources like the release.
+    # With -s and outside of the sources, as in the release, the compiler can use its cache.
     options = ["-std=c99", "-O2", "-s", f"-DSH_FMI={run.description.fmiVersion[0]}"]
     options += [f"-I{HEADERS}", f"-I{FMU_SOURCES}", "-o", str(program), str(DRIVERS / "master.c")]
     link = [f"binaries/{binary}", "-Wl,-rpath,$ORIGIN"]  # Windows searches the folder
@@ -78,8 +78,8 @@ def assert_same_in(
         cwd=folder,
         env={
             **os.environ,
-            "WINEPREFIX": str((build / "wine").resolve()),  # not the folder of the user
-            "WINEDLLOVERRIDES": "mscoree,mshtml=",  # prevents a question to download these
+            "WINEPREFIX": str((build / "wine").resolve()),  # not the Wine folder of the user
+            "WINEDLLOVERRIDES": "mscoree,mshtml=",  # no offer to download Mono or Gecko
             "WINEDEBUG": "-all",
         },
         capture_output=True,

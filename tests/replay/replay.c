@@ -9,7 +9,7 @@
 
 #include "sigmahat.h"
 
-/* Sets one of several configurations, which together use all variants of all blocks. Returns 0 for an unknown letter. */
+/* Sets one of several configurations, which together use each variant of each block. Returns 0 for an unknown letter. */
 static int configure(sh_parameters *p, char configuration)
 {
     sh_parameters_default(p);
@@ -31,7 +31,7 @@ static int configure(sh_parameters *p, char configuration)
     case 'e':
         p->filter.kind = SH_FILTER_FINITE_DIFFERENCE;
         p->rls.kind = SH_RLS_STANDARD;
-        p->rls.P_0 = 1; /* gives the same ridge as in Table I */
+        p->rls.P_0 = 1; /* the ridge c P_0 is the same as in Table I */
         break;
     case 'f':
         p->filter.weighting = SH_WEIGHTING_AS_PRINTED;

@@ -174,7 +174,7 @@ def test_fewer_points_of_a_long_signal_keep_every_peak(samples: int) -> None:
     for value in (x.max(), x.min()):
         (at,) = t[x == value]
         assert np.abs(reduced.t[shown == value] - at).min() <= width
-    # An interval in the middle contains every sample.
+    # The reduced signal contains every sample of an interval in the middle.
     first, last = reduced.whole or (t[0], t[-1])
     inside = (t >= first) & (t <= last)
     start = int(np.searchsorted(reduced.t, first))

@@ -63,7 +63,7 @@ def test_indices_by_hand() -> None:
 
 
 def test_errors_relative_to_another_stiffness_by_hand() -> None:
-    # The errors are +1, -1, +2, the relative errors 1/2, -1/4, 2/8 after a reference of 0.
+    # The errors are +1, -1, +2; relative to the reference, the errors are 1/2, -1/4, 2/8.
     arguments = [0.0, 3.0, 6.0], [1.0, 2.0, 8.0], [2.0, 4.0, 8.0]
     assert msrep(*arguments) == pytest.approx((1 / 4 + 1 / 16 + 1 / 16) / 2 * 100, rel=1e-14)
     assert mean_error(*arguments) == pytest.approx((1 / 2 - 1 / 4 + 1 / 4) / 3 * 100, rel=1e-14)

@@ -2,10 +2,10 @@
 
     build/venv/bin/python tests/studies/mutation.py [NUMBER [SEED]]
 
-The program selects NUMBER places in all files of c/. At each place it changes one token (operator,
-constant, index or function), and runs the tests with this mutant. It prints all mutants that pass
-the tests. A hash of SEED and of the source line selects a place, so that changes of other lines do
-not affect the selection.
+The program selects NUMBER places in all files of c/. At each place the program changes one token,
+such as an operator or a constant, and runs the tests with this mutant. The program prints all
+mutants that pass the tests. A hash of SEED and of the source line selects a place, so that changes
+of other lines do not affect the selection.
 """
 
 import hashlib
@@ -95,7 +95,7 @@ class Mutant:
         return text[begin : text.find("\n", self.start)].strip()
 
     def makes(self, code: str) -> bool:
-        """Returns whether the mutant contains this code, which may have several lines."""
+        """Returns whether the mutant contains `code`, which may have several lines."""
         texts = (" ".join(text.split()) for text in (SOURCES[self.file].read_text(), self.text()))
         before, after = (text.count(code) for text in texts)
         return after > before
@@ -126,7 +126,7 @@ def candidates(file: Path, seed: str) -> list[tuple[Mutant, ...]]:
 
 
 def build(folder: Path, mutant: Mutant | None = None) -> Path | None:
-    """Builds the library, or a mutant of it, in a new folder. Returns None after a C error."""
+    """Builds the library or a mutant in a new folder. Returns None if the code does not compile."""
     tree = Path(tempfile.mkdtemp(dir=folder))
     sources = {**SOURCES, "run.c": TESTS / "drivers" / "run.c"}
     if mutant:

@@ -82,7 +82,7 @@ def test_killed_and_resumed_is_the_same_file(shell: Shell) -> None:
     assert (len(gone), alive) == (len(workers), [])
     before = records(killed)
     assert 2 <= len(before) < 16
-    # AND the same command only executes the missing runs.
+    # AND the same command of the sweep only executes the missing runs.
     said = shell.run(f"{command} --out killed")
     assert shell.err == ""
     assert records(killed)[: len(before)] == before
@@ -148,7 +148,7 @@ def test_a_file_of_runs_that_is_in_use_or_damaged(shell: Shell) -> None:
 
 
 def test_runs_that_fail_are_reported(shell: Shell) -> None:
-    # GIVEN a random inertia that is negative for some seeds, which the FMU refuses
+    # GIVEN a random inertia, which is negative for some seeds, so that the FMU refuses the value
     inertia = "'estimator.motor.B=normal(2.3e-5,5e-5)'"
     said = shell.run(f"{QUICK} --seeds 6 --set {inertia} --out out")
     assert shell.err == ""

@@ -43,7 +43,7 @@ def validate(shell: Shell, text: str, status: int) -> dict[str, Any]:
 
 
 def unwrapped(name: str) -> str:
-    """Returns a configuration for the counter without wrapping, with an error from WRONG."""
+    """Returns a configuration with an error from WRONG, for the counter that does not wrap."""
     old, new, _ = WRONG[name]
     return RIGHT.replace("motor_counts", "unwrapped").replace(old, new)
 
@@ -57,7 +57,7 @@ def test_a_counter_that_begins_in_another_turn(shell: Shell) -> None:
     value, half = found["stiffness of this log [N.m/rad]"]
     assert abs(value - KNEE["spring.k_1"]) < half < 50
     # WHEN range.phi is not set, THEN the largest possible deformation is unknown.
-    # THEN `validate` does not shift the angle, but reports the difference and the key to set.
+    # THEN `validate` does not shift the motor angle, but reports the turns and the key to set.
     found = validate(shell, WRAPPED.replace("range.phi = 0.03\n", ""), 1)
     assert not found["agree"]
     assert not any("periods of its counter" in note for note in found["notes"])

@@ -82,7 +82,7 @@ def test_a_log_without_motion_cannot_tell_and_nothing_is_written(knee: Shell) ->
 def test_a_log_that_was_learned_from_confirms_nothing(knee: Shell) -> None:
     result = knee.json(f"validate knee.parquet {WITH}", 1)
     assert result["repeated"] is True and result["agree"] is None
-    # THEN both stiffnesses are exactly equal, because both come from the same final state.
+    # THEN both stiffnesses are exactly equal, as both come from the same state of the estimator.
     assert result["z"] == 0.0
     assert result["stiffness learned [N.m/rad]"] == result["stiffness of this log [N.m/rad]"]
 
@@ -126,7 +126,7 @@ def test_agreement_in_figures() -> None:
 
 
 def test_the_gain_of_the_torque_is_one_error_of_both() -> None:
-    """An unknown gain widens both intervals. It explains no difference if it acts alike in both."""
+    """A torque gain widens both intervals, but hardly explains a difference: it acts on both logs."""
     # GIVEN a standard deviation of 10 % from the gain, and an independent part of 0.5
     before, alone = (estimates(x, float(np.hypot(0.5, 0.1 * x))) for x in (100.0, 105.0))
     found = agreement(before, alone, 0.1)
