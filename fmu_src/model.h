@@ -51,7 +51,7 @@ typedef struct {
     /* If an input has the offset o, its time derivative has the offset o + derivative_offset. */
     size_t derivative_offset;
     /* Checks constraints between parameters, after the shell has checked the range of each parameter. Returns SH_OK,
-     * or SH_ERROR after a message. The pointer `check` may be NULL.
+     * or SH_ERROR after a message. A model without constraints sets `check` to NULL.
      */
     sh_status (*check)(const void *model, sh_instance *log);
     /* Computes state and outputs at time t [s] from parameters and inputs. `initialize` may be called repeatedly. */

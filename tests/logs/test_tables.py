@@ -40,7 +40,7 @@ def test_a_csv_log_is_parsed_once(tmp_path: Path) -> None:
 
 
 def test_a_column_that_begins_with_numbers_may_go_on_with_text(tmp_path: Path) -> None:
-    # GIVEN text after the first part of the file, which determines the types of columns
+    # GIVEN text behind the first part of the CSV file, which determines the types of the columns
     rows = 40_000
     note = np.arange(rows).astype(str)
     note[-1] = "end"

@@ -130,7 +130,7 @@ NONE, NOT_EXCITED, MISFIT, OUT_OF_RANGE = 1, 3, 4, 5
     [
         ((0.1, 0.1), 1.0, NONE),
         ((0.1, 0.1), 100.0, NOT_EXCITED),
-        ((0.7, 0.1), 1.0, NONE),  # one motor may move too little
+        ((0.7, 0.1), 1.0, NONE),  # one motor may hardly move
         ((0.7, 0.1), 100.0, NOT_EXCITED),
         ((1.5, 0.1), 1.0, MISFIT),
         ((0.1, 2.5), 1.0, OUT_OF_RANGE),

@@ -117,7 +117,7 @@ def test_joints_have_one_file_and_edits_of_their_own(tmp_path: Path) -> None:
 def test_a_file_that_exists_is_overwritten_on_demand_only(tmp_path: Path) -> None:
     setup = setup_of(dict(knee_log()), tmp_path)
     setup.path.write_text("# of somebody else\n")
-    setup.write(overwrite=True)  # the user has not confirmed it
+    setup.write(overwrite=True)  # without confirmation by the user
     assert setup.path.read_text() == "# of somebody else\n"
     setup.write(overwrite=False)
     assert setup.asks_to_overwrite

@@ -66,7 +66,7 @@ def test_table_of_one_seed() -> None:
         assert row["seeds"] == 1
     assert rows["RESIDUAL"]["MSE of the paper [(N.m/rad)2]"] == 128.1614
     assert rows["RESIDUAL"]["MSREP of the paper [%]"] == 0.58
-    assert rows["MODEL-measured"]["MSREP of the paper [%]"] is None  # the paper has no value for it
+    assert rows["MODEL-measured"]["MSREP of the paper [%]"] is None  # the paper has no such value
 
 
 def test_mean_and_interval_over_seeds() -> None:

@@ -9,7 +9,7 @@
 
 #include "sigmahat.h"
 
-/* Sets one of several configurations, which together use each variant of each block. Returns 0 for an unknown letter. */
+/* Sets a configuration; all configurations together use each variant of each block. Returns 0 for an unknown letter. */
 static int configure(sh_parameters *p, char configuration)
 {
     sh_parameters_default(p);

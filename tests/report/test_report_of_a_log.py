@@ -94,7 +94,7 @@ def test_limits_keep_what_belongs_to_the_signal() -> None:
     low, high = limits(spiked)
     assert low == x.min() and x.max() < high < 3
     assert limits(np.array([np.nan])) == (0.0, 1.0)
-    step = np.append(np.zeros(10_000), 1.0)  # a single different value is no outlier
+    step = np.append(np.zeros(10_000), 1.0)  # a single step is no outlier
     assert limits(step) == (0.0, 1.0)
 
 

@@ -126,7 +126,7 @@ def test_agreement_in_figures() -> None:
 
 
 def test_the_gain_of_the_torque_is_one_error_of_both() -> None:
-    """A torque gain widens both intervals, but hardly explains a difference: it acts on both logs."""
+    """A torque gain widens both intervals, but hardly explains a difference between two logs."""
     # GIVEN a standard deviation of 10 % from the gain, and an independent part of 0.5
     before, alone = (estimates(x, float(np.hypot(0.5, 0.1 * x))) for x in (100.0, 105.0))
     found = agreement(before, alone, 0.1)
