@@ -28,7 +28,7 @@ int sh_estimator_fmu_is_state(const sh_estimator_fmu *fmu, const sh_parameters *
            sh_estimator_check(&fmu->estimator, parameters) == 0;
 }
 
-/* Largest number of ticks in a communication step. More ticks would take minutes and suggest a wrong unit of time. */
+/* Largest number of ticks in a communication step. A step with more ticks would take minutes. */
 static const double MAX_TICKS = 1e9;
 
 /* Extrapolates the inputs linearly to the time `after` [s], which counts from the start of the step. */

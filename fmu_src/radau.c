@@ -294,7 +294,7 @@ int sh_radau_integrate(double *x, const double *u, const double *du, const doubl
             ++steps;
             owed = followers;
             if (pieces <= 1.0) {
-                *h = fmin(*h, begin); /* the next call may start with the same transient */
+                *h = fmin(*h, begin); /* the next integration may start with the same transient */
                 return steps;
             }
             if (steps == 1) {

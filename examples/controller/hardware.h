@@ -14,11 +14,11 @@ void hardware_start_ticks(uint32_t rate);
  */
 sh_measurement hardware_read(void);
 
-/* Return the clock counts since the current interrupt was due, and the clock counts of one period. */
+/* Two functions that return the clock counts since the current interrupt was due, and the counts of one period. */
 uint32_t hardware_elapsed(void);
 uint32_t hardware_period(void);
 
-/* Start and read a clock for cost.c, which has 24 bits and counts down without interrupts. */
+/* Two functions that start and read a clock for cost.c, which has 24 bits and counts down without interrupts. */
 void hardware_start_clock(void);
 uint32_t hardware_clock(void);
 

@@ -38,7 +38,7 @@ void SysTick_Handler(void)
     }
 }
 
-/* Sets the parameters for a joint without a second motor that adjusts the stiffness. Without this second motor, rls.m,
+/* Sets the parameters for a joint without a second motor that adjusts the stiffness. Without a second motor, rls.m,
  * the number of powers of the set-point, is 1.
  */
 static void configure(sh_parameters *p)

@@ -16,7 +16,7 @@ static void reset(void)
 
     *CPACR = *CPACR | 0xfu << 20; /* the floating-point unit is off after a reset */
     __asm volatile("dsb\n\tisb");
-    /* Here a program in flash would copy .data to RAM. The emulator has already loaded .data into RAM. */
+    /* A program in flash memory would now copy .data to RAM. The emulator has already loaded .data into RAM. */
     _start();
 }
 

@@ -14,7 +14,7 @@ import numpy as np
 
 import sigmahat
 
-COUNTS, GEAR_RATIO, TORQUE_CONSTANT = 4096, 100, 0.1  # counts per turn of the motor; [N.m/A]
+COUNTS, GEAR_RATIO, TORQUE_CONSTANT = 4096, 100, 0.1  # counts per motor turn, ratio, [N.m/A]
 LINK_COUNTS = 2**18
 WRAP = 2**16
 T = 0.004  # [s]

@@ -20,7 +20,7 @@ typedef struct {
     const char *function; /* name of the called function, for messages */
     unsigned types;       /* bit set of the allowed SH_TYPE_*; 0: any reference is an error */
     sh_values values;
-    int fmi3; /* 1: time is a variable, and start values can be read before the initialisation */
+    int fmi3; /* 1 in FMI 3.0: time is a variable, start values are readable before initialisation */
     const uint32_t *references;
     size_t count;  /* number of value references */
     size_t length; /* number of elements in the importer's array of values */

@@ -47,7 +47,7 @@ def test_the_torque_is_measured_late_or_early(late: float) -> None:
     experiment = replace(short(SEA_1K), torque=sines, late=late, rest=0.1)
     t = times(1e-3, 0.499)
     expected = sines(t - late - 0.1) * (t - late >= 0.1)
-    away = np.abs(t - late - 0.1) > 2e-3  # not near the step of the torque
+    away = np.abs(t - late - 0.1) > 2e-3  # samples not near the torque step
     tau = motion.run(experiment).measured["tau"]
     assert len(tau) == 500
     # The torque between two samples is interpolated linearly, which approximates the sine.

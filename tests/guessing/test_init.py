@@ -150,7 +150,7 @@ def test_the_gear_ratio_of_theta_is_that_of_the_motor() -> None:
 def test_a_time_in_another_unit_is_doubted(
     step: float, unit: str | None, period: str, shell: Shell
 ) -> None:
-    """GIVEN times in ms or us whose name says seconds, THEN `init` names the probable unit."""
+    """GIVEN a time column in ms or us that is named like seconds, THEN `init` names the unit."""
     motion = np.sin(np.arange(1000) / 100)
     columns = {"theta": motion, "q": 0.9 * motion, "tau": motion**2}
     write_log({"time_s": step * np.arange(1000), **columns}, Path("log.csv"))

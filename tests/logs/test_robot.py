@@ -1,4 +1,4 @@
-"""Estimates for three axes of an industrial robot, made like a user would. See docs/robot.md.
+"""Stiffness of three axes of an industrial robot, with the commands of a user: docs/robot.md.
 
 An issue of the project defined the required accuracy. All intervals have a confidence of 95 %.
 """

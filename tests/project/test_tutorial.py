@@ -38,7 +38,7 @@ def printed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
 
 @pytest.fixture(scope="module")
 def recording(tmp_path_factory: pytest.TempPathFactory) -> Any:
-    """The program that simulates the log, the log that it writes, and the recorded joint."""
+    """The program that simulates the log, the simulated log, and the recording of the joint."""
     program = runpy.run_path(str(FILES / "record.py"))
     log = tmp_path_factory.mktemp("again") / "knee.csv"
     return program["JOINT"], log, program["record"](log)

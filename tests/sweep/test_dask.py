@@ -1,4 +1,4 @@
-"""Tests of sweeps on a local Dask cluster, which is started like a user would do."""
+"""Tests of sweeps on a local Dask cluster, which is started with the commands of a user."""
 
 import json
 import signal
