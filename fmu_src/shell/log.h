@@ -14,8 +14,8 @@ enum {
     SH_LOG_ALL = 15
 };
 
-/* Each version of FMI defines its own sh_special and sh_deliver. sh_special is a character with a special meaning in
- * messages, so sh_report writes it twice. sh_deliver passes a message to the importer's logger, which is not NULL.
+/* The character sh_special has a special meaning in messages of a version of FMI, so sh_report writes it twice. The
+ * function sh_deliver passes a message to the logger of the importer. This logger must not be NULL.
  */
 extern const char sh_special;
 void sh_deliver(const sh_instance *instance, sh_status status, const char *category,

@@ -158,8 +158,8 @@ sh_status sh_communication_step(void *handle, double t, double h, const char *fu
         return SH_ERROR;
     }
     /* An importer that adds up step lengths makes rounding errors in t. Rounding errors of t have no effect, because
-     * ticks depend on the sum of all h. If an importer passes a step length h that does not quite fit its times t,
-     * the step is made a little longer or shorter than h, so that the step ends at t + h.
+     * ticks depend on the sum of all h. The step length h of an importer may not quite fit its times
+     * t. The step is then a little longer or shorter than h, and ends at t + h.
      */
     length = h;
     late = t - instance->time;

@@ -71,8 +71,8 @@ sh_status sh_check_parameters(sh_instance *instance);
 sh_status sh_initialize(sh_instance *instance);
 
 /* Functions that save, restore and serialise the state of the FMU. A function that fails returns SH_ERROR after a
- * message and changes nothing. sh_save_state writes the state to *state, or to new memory if *state is NULL.
- * sh_state_size writes the number of bytes of a serialised state to *size.
+ * message and changes nothing. The function sh_save_state writes to *state, or to new memory if *state is NULL. The
+ * function sh_state_size writes the number of bytes of a serialised state to *size.
  */
 sh_status sh_save_state(void *handle, void **state, const char *function);
 sh_status sh_restore_state(void *handle, void *state, const char *function);
