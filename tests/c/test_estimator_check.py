@@ -5,8 +5,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from c_library import Estimator, Library
 from regression_joint import Joint
@@ -73,7 +71,7 @@ OTHERS = (
 """Other integers of it, none of which can be below 0 or above 64."""
 
 
-def damage(part: Any, member: str, place: int, value: int) -> None:
+def damage(part: Any, member: str, place: int, value: float) -> None:
     """Sets a member by its dotted name; of an array, the element at `place`."""
     *groups, last = member.split(".")
     for group in groups:
@@ -104,26 +102,17 @@ def test_the_limits_are_exact(c: Library, member: str) -> None:
         assert passes(e) == (least <= value <= largest)
 
 
-@settings(deadline=None)
-@given(value=st.integers(-(2**31), 2**31 - 1).filter(lambda value: value != 9))
-def test_another_size_of_the_recursion_is_found(c: Library, value: int) -> None:
-    e = Estimator(c, {"method": PAPER2011, "rls.n": 3, "rls.m": 3})
-    e.state.method.paper2011.rls.P.size = value
-    assert not passes(e)
-
-
 @pytest.mark.parametrize(
     ("member", "value"),
-    [("started", 2), ("started", -1), ("skipped", -1.0), ("skipped", np.nan), ("skipped", np.inf)],
+    [
+        *(("state.method.paper2011.rls.P.size", n) for n in (-(2**31), 0, 8, 10, 9 + 2**16)),
+        *(("state.started", value) for value in (-1, 2)),
+        *(("state.skipped", value) for value in (-1.0, np.nan, np.inf)),
+        *(("parameters.method", value) for value in (-(2**31), -1, 0, 3, 2**31 - 1)),
+    ],
 )
-def test_another_count_of_samples_is_found(c: Library, member: str, value: float) -> None:
-    e = Estimator(c, {})
-    setattr(e.state, member, value)
-    assert not passes(e)
-
-
-@pytest.mark.parametrize("method", [-(2**31), -1, 0, 3, 2**31 - 1])
-def test_no_method_has_no_state(c: Library, method: int) -> None:
-    e = Estimator(c, {})
-    e.parameters.method = method
+def test_another_size_count_or_method_is_found(c: Library, member: str, value: float) -> None:
+    """Of nine parameters, of samples, or one that does not exist."""
+    e = Estimator(c, {"method": PAPER2011, "rls.n": 3, "rls.m": 3})
+    damage(e, member, 0, value)
     assert not passes(e)
