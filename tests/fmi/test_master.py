@@ -17,6 +17,7 @@ from fmpy import fmi2
 
 import sigmahat
 from controllers import run
+from plant_runs import QUIET
 from recordings import one_seed
 from sigmahat.fmi.instance import Fmu, FmuError, Slave, opened
 from sigmahat.fmi.master import simulate
@@ -54,8 +55,7 @@ def test_fmpy_gives_the_same_estimate_from_the_recorded_measurements() -> None:
 
 
 def test_inputs_are_linear_between_samples() -> None:
-    quiet = {"noise.tau_variance": 0.0, "noise.tau_e_variance": 0.0}
-    plant = replace(PLANT, start={**PLANT.start, **quiet}, record=("tau_measured", "theta"))
+    plant = replace(PLANT, start={**PLANT.start, **QUIET}, record=("tau_measured", "theta"))
     coarse, fine = (simulate(plant, {}, h, round(0.5 / h)) for h in (1e-2, 1e-4))
     tau = PLANT.inputs["tau"]
     np.testing.assert_allclose(coarse.plant["tau_measured"], tau(coarse.t), rtol=0, atol=1e-15)

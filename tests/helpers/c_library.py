@@ -194,19 +194,12 @@ class Estimator:
         return self._drive(measurements, ticks, None)
 
     def _drive(self, measurements: Array, ticks: int, record: NDArray[np.void] | None) -> int:
-        ffi = self.library.ffi
+        ffi, p = self.library.ffi, self.parameters
         z = np.zeros(len(measurements), self.library.dtype("sh_measurement"))
         for i, name in enumerate(MEASUREMENTS):
             z[name] = measurements[:, i]
-        good: int = self.library.lib.test_run(
-            self.state,
-            self.parameters,
-            ffi.cast("sh_measurement *", ffi.from_buffer(z)),
-            len(z),
-            ticks,
-            self.estimate,
-            ffi.NULL
-            if record is None
-            else ffi.cast("sh_estimate *", ffi.from_buffer(record, require_writable=True)),
-        )
+        samples = ffi.from_buffer("sh_measurement[]", z)
+        rows = ffi.NULL if record is None else ffi.from_buffer("sh_estimate[]", record)
+        run = self.library.lib.test_run
+        good: int = run(self.state, p, samples, len(z), ticks, self.estimate, rows)
         return good

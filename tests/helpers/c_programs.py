@@ -63,27 +63,13 @@ def compile_driver(
     return program
 
 
-@cache
-def _works(compiler: str, flags: tuple[str, ...], folder: Path, text: str) -> bool:
-    source = folder / "probe.c"
-    source.write_text(text)
-    build = [compiler, *flags, str(source), "-o", str(folder / "probe")]
-    run = [str(folder / "probe"), "-runs=1"]
-    return all(
-        subprocess.run(command, capture_output=True, cwd=folder).returncode == 0
-        for command in (build, run)
-    )
-
-
 def compiler_with(flags: tuple[str, ...], folder: Path) -> str:
     """A compiler that can build programs with these flags that run; a runtime may be missing."""
-    text = "int main(void) { return 0; }\n"
-    if any("fuzzer" in flag for flag in flags):
-        text = "int LLVMFuzzerTestOneInput(void) { return 0; }\n"
-    for compiler in ("clang", "gcc"):
-        if shutil.which(compiler) and _works(compiler, flags, folder, text):
+    entry = "LLVMFuzzerTestOneInput" if any("fuzzer" in flag for flag in flags) else "main"
+    source, program = folder / "probe.c", str(folder / "probe")
+    source.write_text(f"int {entry}(void) {{ return 0; }}\n")
+    for compiler in filter(shutil.which, ("clang", "gcc")):
+        commands = [[compiler, *flags, str(source), "-o", program], [program, "-runs=1"]]
+        if not any(subprocess.run(each, capture_output=True).returncode for each in commands):
             return compiler
-    missing(
-        f"a compiler that builds programs with {' '.join(flags) or 'no options'}",
-        "apt-get install clang libclang-rt-dev",
-    )
+    missing(f"a compiler for {' '.join(flags)}", "apt-get install clang libclang-rt-dev")

@@ -83,12 +83,9 @@ def test_the_page_in_the_browser_watches(site: Path, tmp_path: Path) -> None:
     port = free_port()
     address = f"{(site / 'live' / 'index.html').as_uri()}?ws=ws://127.0.0.1:{port}"
     with replayed(tmp_path, 20_000, port), opened(address) as page:
-        for _ in range(100):
-            shown = page.driver.find_element("id", "watched-sigma").text
-            if "±" in shown and page.run("return watch.last.confident"):
-                break
-            time.sleep(0.2)
-        sigma, _, rest = shown.partition(" ± ")
+        watched = page.driver.find_element("id", "watched-sigma")
+        page.until(lambda: "±" in watched.text and page.run("return watch.last.confident"))
+        sigma, _, rest = watched.text.partition(" ± ")
         assert float(sigma) == pytest.approx(400, rel=0.1)
         assert rest.endswith("N·m/rad")
         options = page.run("return [...watch.field.options].map((each) => each.value)")
