@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator
+from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
@@ -54,9 +55,7 @@ def test_start_values_and_ranges_are_those_of_the_list(c: Library, listed: list[
     """A limit is accepted itself, and what is beyond it is refused."""
     for variable in (v for v in listed if v.causality == "parameter"):
         p: Any = c.parameters({})  # it owns the memory of its parts
-        value = p
-        for part in variable.name.split("."):
-            value = getattr(value, part)
+        value = attrgetter(variable.name)(p)
         boolean = variable.type == "Boolean"
         start = ("false", "true").index(variable.start) if boolean else float(variable.start)
         assert value == start, variable.name

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 from functools import cache
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -32,10 +33,7 @@ def test_defaults_are_those_of_the_paper_and_in_their_ranges(c: Library) -> None
     p = c.parameters({})
     assert c.violation(p) is None
     for name, value in DEFAULTS.items():
-        at = p
-        for part in name.split("."):
-            at = getattr(at, part)
-        assert at == pytest.approx(value, rel=1e-15), name
+        assert attrgetter(name)(p) == pytest.approx(value, rel=1e-15), name
     assert all(entry == 0 for row in p.rls.eta_0 for entry in row)
 
 

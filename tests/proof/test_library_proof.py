@@ -157,10 +157,7 @@ def test_an_index_one_too_far_is_found(tmp_path: Path) -> None:
 
 
 def test_information_that_is_not_checked_is_found(tmp_path: Path) -> None:
-    file, check = (
-        "filtered_regression/information.c",
-        "if (!(sh_fabs(*x) > 0 && after > SH_SMALLEST_D))",
-    )
-    of = with_fault(c_sources.LIBRARY, tmp_path / "c", file, check, "if (!(sh_fabs(*x) > 0))")
+    file, check = "filtered_regression/information.c", " && after > SH_SMALLEST_D))"
+    of = with_fault(c_sources.LIBRARY, tmp_path / "c", file, check, "))")
     (alarm,) = part("information", "positive", "double", tmp_path, of, SH_MAX_COLUMNS=1).alarms
     assert alarm.startswith("information.c:") and "positive" in alarm
