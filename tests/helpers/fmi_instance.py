@@ -81,8 +81,9 @@ class _Instance:
         return (ctypes.c_uint * len(names))(*map(self.reference, names))
 
     def access(self, function: str, references: Any, values: Any) -> int:
-        """Calls GetX or SetX; both arguments are arrays."""
-        raise NotImplementedError
+        """Calls GetX or SetX; both arguments are arrays. FMI 3.0 has the number of each."""
+        n = SIZE(len(values))
+        return self.call(function, references, n, values, *([n] if self.prefix == "fmi3" else []))
 
     def set(self, name: str, value: float) -> int:
         kind, c_type = self.types[self.variables[name].type]
@@ -107,14 +108,14 @@ class _Instance:
         self, start: float = 0.0, stop: float | None = None, tolerance: float | None = None
     ) -> int:
         """Tells the experiment and enters initialisation mode."""
-        return self.begin(
+        experiment = (
             *(int(tolerance is not None), REAL(tolerance or 0.0), REAL(start)),
             *(int(stop is not None), REAL(stop or 0.0)),
         )
-
-    def begin(self, *experiment: Any) -> int:
-        """Enters initialisation mode with the arguments of an experiment."""
-        raise NotImplementedError
+        if self.prefix == "fmi3":
+            return self.call("EnterInitializationMode", *experiment)
+        status = self.call("SetupExperiment", *experiment)
+        return status if status != OK else self.call("EnterInitializationMode")
 
     def exit(self) -> int:
         return self.call("ExitInitializationMode")
@@ -130,9 +131,6 @@ class _Instance:
         assert self.enter(start, stop) == OK, self.messages
         assert self.exit() == OK, self.messages
         return self
-
-    def step(self, t: float, h: float) -> int:
-        raise NotImplementedError
 
     def save(self) -> ctypes.c_void_p:
         state = ctypes.c_void_p()
@@ -229,16 +227,9 @@ class Instance(_Instance):
         self.blocks.remove(block)
         fmpy.free(block)
 
-    def access(self, function: str, references: Any, values: Any) -> int:
-        return self.call(function, references, SIZE(len(values)), values)
-
-    def set_derivative(self, name: str, value: float, order: int = 1) -> int:
-        reference, orders = self.references([name]), (ctypes.c_int * 1)(order)
+    def set_derivative(self, name: str, value: float) -> int:
+        reference, orders = self.references([name]), (ctypes.c_int * 1)(1)
         return self.call("SetRealInputDerivatives", reference, SIZE(1), orders, (REAL * 1)(value))
-
-    def begin(self, *experiment: Any) -> int:
-        status = self.call("SetupExperiment", *experiment)
-        return status if status != OK else self.call("EnterInitializationMode")
 
     def step(self, t: float, h: float) -> int:
         return self.call("DoStep", REAL(t), REAL(h), 1)
@@ -292,13 +283,6 @@ class Instance3(_Instance):
     def _log(self, environment: int, status: int, category: bytes, text: bytes) -> None:
         assert environment == ENVIRONMENT
         self.messages.append((status, category.decode(), text.decode()))
-
-    def access(self, function: str, references: Any, values: Any) -> int:
-        n = SIZE(len(values))
-        return self.call(function, references, n, values, n)
-
-    def begin(self, *experiment: Any) -> int:
-        return self.call("EnterInitializationMode", *experiment)
 
     def step(self, t: float, h: float) -> int:
         """Makes a step, of which nothing may be asked and which may not end early."""
