@@ -1,4 +1,4 @@
-"""The state of FilteredRegression in C as dense numpy arrays."""
+"""The state of FilteredRegression in C as numpy arrays."""
 
 from typing import Any
 
@@ -22,16 +22,10 @@ def factors(a: Any) -> tuple[Array, Array, Array]:
     return U, np.array(list(a.D)[:n]), z
 
 
-def dense(a: Any) -> tuple[Array, Array]:
-    """Information matrix sum w x x', and sum w x y for both sides [size: n x n, n x 2]."""
-    U, D, z = factors(a)
-    return (U.T * D) @ U, (U.T * D) @ z
-
-
 def covariance(estimator: Estimator) -> Array:
     """Covariance of the posterior, with prior variances of 1, in its own order."""
-    matrix, _ = dense(estimator.state.method.regression.posterior.information)
-    return np.asarray(np.linalg.inv(matrix), dtype=np.float64)
+    U, D, _ = factors(estimator.state.method.regression.posterior.information)
+    return np.asarray(np.linalg.inv((U.T * D) @ U), dtype=np.float64)
 
 
 def kinds(estimator: Estimator) -> list[str]:
