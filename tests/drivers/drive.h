@@ -8,16 +8,6 @@
 
 #include "fmi_calls.h"
 
-/* A new instance, initialised; its messages are ignored. */
-static inline void *start(void)
-{
-    void *instance = fmi_instantiate(sh_fmu_model.guid);
-
-    check(instance != NULL, "instantiate");
-    fmi_initialize(instance);
-    return instance;
-}
-
 /* Makes step number k, of 1 ms. */
 static inline void step(void *instance, int variant, long k)
 {

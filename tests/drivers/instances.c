@@ -42,10 +42,12 @@ static void *run_alone(void *argument)
 {
     const uint32_t unknown = 1000000;
     run *own = argument;
-    void *instance = start(), *state;
+    void *instance = fmi_instantiate(sh_fmu_model.guid), *state;
     double value;
     long k;
 
+    check(instance != NULL, "instantiate");
+    fmi_initialize(instance);
     for (k = 0; k < STEPS; ++k) {
         if (k == STEPS / 2) {
             state = copy_state(instance);

@@ -25,10 +25,7 @@ TABLE1 = scenario("table1")
 
 
 def test_a_refused_step_ends_it_with_the_message_of_the_fmu() -> None:
-    def input_is_lost(t: np.typing.NDArray[np.float64]) -> np.typing.NDArray[np.float64]:
-        return np.where(t < 0.0105, 0.1, np.nan)
-
-    plant = replace(TABLE1.plant, inputs={"tau": input_is_lost})
+    plant = replace(TABLE1.plant, inputs={"tau": lambda t: np.where(t < 0.0105, 0.1, np.nan)})
     with pytest.raises(FmuError, match=r"Step from t = 0\.01 s refused.* finite"):
         simulate(plant, {}, T, 20)
 
@@ -95,11 +92,9 @@ def test_an_ignored_interrupt_stays_ignored() -> None:
 @pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="no timers")
 @pytest.mark.filterwarnings("ignore")
 def test_interrupts_at_any_moment_end_it_and_leave_it_whole() -> None:
-    def lost(t: np.typing.NDArray[np.float64]) -> np.typing.NDArray[np.float64]:
-        return np.where(np.arange(len(t)) % 4 < 2, 0.0, np.nan)  # a warning every fourth sample
-
     path = str(sigmahat.fmu("StiffnessEstimator"))
-    plant = Plant(path, {}, {"theta": lost}, ["sigma"])
+    lost = {"theta": lambda t: np.where(np.arange(len(t)) % 4 < 2, 0.0, np.nan)}
+    plant = Plant(path, {}, lost, ["sigma"])  # a warning every fourth sample
     random = np.random.default_rng(1)
     interrupted = 0
     simulate(plant, {}, T, 10)  # what others do when an FMU is read is not our affair

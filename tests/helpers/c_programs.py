@@ -7,7 +7,6 @@ it fails.
 import shutil
 import subprocess
 import tempfile
-from functools import cache
 from pathlib import Path
 
 from c_sources import FOLDERS, REPOSITORY, SOURCES
@@ -33,7 +32,6 @@ def sources(fmu: str, build: Path, version: str) -> list[Path]:
     ]
 
 
-@cache
 def compile_driver(
     driver: str,
     fmu: str,
@@ -41,7 +39,7 @@ def compile_driver(
     build: Path,
     folder: Path,
     compiler: str,
-    flags: tuple[str, ...] = (),
+    flags: tuple[str, ...],
 ) -> Path:
     """Compiles a program of drivers/ and an FMU, in a new folder inside `folder`.
 

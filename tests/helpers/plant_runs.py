@@ -61,10 +61,7 @@ def times(h: float, duration: float) -> Array:
 
 
 def sinusoids(
-    t: Array,
-    tau: tuple[float, float],
-    tau_c: tuple[float, float],
-    tau_ext: tuple[float, float],
+    t: Array, tau: tuple[float, float], tau_c: tuple[float, float], tau_ext: tuple[float, float]
 ) -> Array:
     """Torques [size: p x 3] at times t, each given by its amplitude [N.m] and frequency [Hz]."""
     return np.column_stack([A * np.sin(2 * np.pi * f * t) for A, f in (tau, tau_c, tau_ext)])

@@ -57,10 +57,7 @@ def _motor(
 
 
 def solution(
-    derivative: Derivative,
-    torques: Callable[[float], Any],
-    initial: Array,
-    duration: float,
+    derivative: Derivative, torques: Callable[[float], Any], initial: Array, duration: float
 ) -> Callable[[Array | float], Array]:
     """States as a function of time, up to `duration` [s]: times [size: p] -> [size: states x p]."""
     solved = solve_ivp(

@@ -144,10 +144,8 @@ class MisfitJoint(Joint):
 
     @property
     def motion(self) -> tuple[Array, Array, Array, Array, Array]:
-        theta, phi = (
-            self.sum_of_sines(0.5, 0.31, 0.83, 1.7),
-            self.sum_of_sines(0.02, 0.45, 1.13, 2.31),
-        )
+        theta = self.sum_of_sines(0.5, 0.31, 0.83, 1.7)
+        phi = self.sum_of_sines(0.02, 0.45, 1.13, 2.31)
         theta_dot = np.gradient(theta, T, edge_order=2)
         theta_ddot = np.gradient(theta_dot, T, edge_order=2)
         return theta, theta_dot, theta_ddot, phi, np.full(len(phi), 0.1)
