@@ -9,7 +9,6 @@ import pytest
 
 from c_library import Estimator, Library
 from c_regression import covariance, kinds
-from dense_signals import GROUPS
 from regression_joint import PLAIN, SETTINGS, STIFFNESS, Joint, MisfitJoint, at_rest
 
 HYSTERESIS, GAP = 4, 6
@@ -87,17 +86,6 @@ def test_a_joint_without_a_misfit_has_no_columns_of_one(c: Library) -> None:
     assert found["misfit"][-1] < 1.2
 
 
-ETA_0 = [[1.0] + [0.0] * 4] * 8
-EVERY_COLUMN = {"method": 2, "prior.B": 0.1, "prior.nominal": 0.2, "rls.eta_0": ETA_0}
-
-
-def test_groups_of_columns_are_not_used_before_they_are_tried(c: Library) -> None:
-    estimator = Estimator(c, EVERY_COLUMN)
-    posterior, of_all = estimator.state.method.regression.posterior, kinds(estimator)
-    used = {of_all[i] for i in posterior.column[0 : posterior.information.size]}
-    assert used == set(of_all) - GROUPS.keys()
-
-
 COLUMNS_OF: dict[str, tuple[str, ...]] = {
     "prior.nominal": ("NOMINAL",),
     "prior.bias": ("BIAS",),
@@ -118,8 +106,10 @@ COLUMNS_OF: dict[str, tuple[str, ...]] = {
 
 @pytest.mark.parametrize("prior", COLUMNS_OF)
 def test_a_prior_of_zero_removes_its_columns_and_no_other(c: Library, prior: str) -> None:
-    of_all = kinds(Estimator(c, EVERY_COLUMN))
-    without = kinds(Estimator(c, {**EVERY_COLUMN, prior: 0.0}))
+    eta_0 = [[1.0] + [0.0] * 4] * 8
+    values = {"method": 2, "prior.B": 0.1, "prior.nominal": 0.2, "rls.eta_0": eta_0}
+    of_all = kinds(Estimator(c, values))
+    without = kinds(Estimator(c, {**values, prior: 0.0}))
     assert without == [kind for kind in of_all if kind not in COLUMNS_OF[prior]]
     assert set(of_all) - set(without) == set(COLUMNS_OF[prior])
 
