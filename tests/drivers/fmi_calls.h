@@ -64,12 +64,10 @@ static inline void *fmi_instantiate(const char *token)
 }
 
 /* In FMI 2.0 two calls: if the first one fails, the second one is left out. */
-static inline sh_status fmi_enter_initialization(void *instance, int tolerance_defined,
-                                                 double tolerance, double start_time,
-                                                 int stop_time_defined, double stop_time)
+static inline sh_status fmi_enter_initialization(void *instance, double start, int has_stop,
+                                                 double stop)
 {
-    const fmi2Status status = fmi2SetupExperiment(instance, tolerance_defined, tolerance,
-                                                  start_time, stop_time_defined, stop_time);
+    const fmi2Status status = fmi2SetupExperiment(instance, 0, 0.0, start, has_stop, stop);
 
     return (sh_status)(status == fmi2OK ? fmi2EnterInitializationMode(instance) : status);
 }
@@ -101,9 +99,8 @@ static inline sh_status fmi_set_slope(void *instance, uint32_t input, double slo
     ((sh_status)fmi3GetFloat64(instance, references, n, values, n))
 #define fmi_set_reals(instance, references, n, values)                                             \
     ((sh_status)fmi3SetFloat64(instance, references, n, values, n))
-#define fmi_enter_initialization(instance, has_tolerance, tolerance, start, has_stop, stop)        \
-    ((sh_status)fmi3EnterInitializationMode(instance, (has_tolerance) != 0, tolerance, start,      \
-                                            (has_stop) != 0, stop))
+#define fmi_enter_initialization(instance, start, has_stop, stop)                                  \
+    ((sh_status)fmi3EnterInitializationMode(instance, 0, 0.0, start, (has_stop) != 0, stop))
 #define fmi_set_slope(instance, input, slope) ((void)(slope), SH_OK)
 
 static inline void fmi_ignore(fmi3InstanceEnvironment environment, fmi3Status status,
@@ -145,7 +142,7 @@ static inline sh_status fmi_do_step(void *instance, double t, double h)
 /* Makes an instance ready for the first step, at t = 0. */
 static inline void fmi_initialize(void *instance)
 {
-    check(fmi_enter_initialization(instance, 0, 0.0, 0.0, 0, 0.0) == SH_OK, "enter initialisation");
+    check(fmi_enter_initialization(instance, 0.0, 0, 0.0) == SH_OK, "enter initialisation");
     check(fmi_exit_initialization(instance) == SH_OK, "exit initialisation");
 }
 

@@ -464,7 +464,7 @@ static void initialize(void)
     fmi_reset(instance);
     set_reals(SH_ROLE_GUESS, SH_ROLE_TUNABLE);
     some_access();
-    fmi_enter_initialization(instance, 0, 0.0, start, seldom(4), stop);
+    fmi_enter_initialization(instance, start, seldom(4), stop);
     fmi_exit_initialization(instance);
 }
 
@@ -508,7 +508,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     }
     instance = some_instance(seldom(4) ? some_text(text) : "fuzz", sh_fmu_model.guid);
     if (!seldom(2)) { /* most sequences begin with an initialised instance */
-        fmi_enter_initialization(instance, 0, 0.0, 0.0, 0, 0.0);
+        fmi_enter_initialization(instance, 0.0, 0, 0.0);
         fmi_exit_initialization(instance);
     }
     while (next < end) {
