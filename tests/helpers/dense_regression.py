@@ -6,7 +6,7 @@ It shares nothing with the C code except the direction of motion, which has its 
 
 import math
 from collections import defaultdict
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -622,13 +622,7 @@ class Oracle:
         if len(self.blocks.rows) < self.blocks.length:
             self.blocks.rows.clear()
 
-    def mean_row(
-        self,
-        filtered: Filtered,
-        loads: Array,
-        derivatives: tuple[Array, Array],
-        errors: Mapping[int, tuple[Array, Array]],
-    ) -> Long:
+    def mean_row(self, filtered: Filtered, loads: Array) -> Long:
         """Of the samples; what depends on the estimate does so by the present one."""
 
         def mean(x: Array) -> Any:
@@ -642,10 +636,11 @@ class Oracle:
             if kind == "DRIVE":
                 row[i] *= abs(sides[0])
             if kind == "DELAY":
-                first, second = (mean(of) for of in derivatives)
+                first, second = (mean(of) for of in filtered.derivatives)
                 row[i] = -prior * filtered.gain * (first + self.delay / 2 * second)
-            if i in errors and self.known and not filtered.measured:
-                row[i] = self.sigma * mean(errors[i][0]) + mean(errors[i][1])
+            if i in filtered.encoder_errors and self.known and not filtered.measured:
+                angle, motor = map(mean, filtered.encoder_errors[i])
+                row[i] = self.sigma * angle + motor
         return row
 
     # Samples
@@ -663,9 +658,6 @@ class Oracle:
         run = filtered.run
         theta = np.concatenate([np.full(4, self.z[run.start, 0]), self.z[run, 0]])
         rough = np.convolve(theta, [1, -4, 6, -4, 1], "valid") ** 2 / 70
-        of_motor = [i for i, kind in enumerate(self.kinds) if kind in ("SIN_M", "COS_M")]
-        errors = {i: filtered.encoder_error(i) for i in of_motor}
-        derivatives = filtered.torque_derivatives()
         smooth, state, loads = as_if_smooth(self.w, self.T), np.zeros(3), np.zeros(len(rough))
         for at, k in enumerate(range(run.start, run.stop)):
             self.deform(k, at)
@@ -682,7 +674,7 @@ class Oracle:
                 self.samples.append(at)
                 complete = len(self.samples) == self.K
             if complete:
-                row = self.mean_row(filtered, loads, derivatives, errors)
+                row = self.mean_row(filtered, loads)
                 settled = self.was_at_rest(filtered, at, row)
                 if settled:
                     self.learn(k, filtered, row, rough)

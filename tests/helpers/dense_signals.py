@@ -238,6 +238,9 @@ class Filtered:
         self.y = inertial + viscous + self.gain * torque
         self.sides = np.column_stack([self.gain * torque, self.y - self.nominal])
         self.rows = np.column_stack([self.column(i) for i in range(len(self.columns))])
+        self.derivatives = [self.filtered(self.torque, order, self.held) for order in (1, 2)]
+        of_motor = (i for i, (kind, _, _) in enumerate(self.columns) if kind in ("SIN_M", "COS_M"))
+        self.encoder_errors = {i: self.encoder_error(i) for i in of_motor}
 
     def filtered(self, x: Array, order: int, held: bool = False) -> Array:
         return through(x, order, self.w, self.T, held)
@@ -263,9 +266,6 @@ class Filtered:
         if kind == "DAMPING":
             return self.filtered(self.F[:, i] - self.F[0, i], 1)
         return self.filtered(self.F[:, i], 0)
-
-    def torque_derivatives(self) -> tuple[Array, Array]:
-        return self.filtered(self.torque, 1, self.held), self.filtered(self.torque, 2, self.held)
 
     def encoder_error(self, i: int) -> tuple[Array, Array]:
         """Of the column i: its signal filtered, and the torque of the motor that it causes."""
