@@ -29,8 +29,6 @@ CONFIGURATION: dict[str, dict[str, float]] = {
     "model.b": {"modality": 3},
     "noise.tau_e": {"modality": 2},
     "motor.uneven": {"motor.tau_coulomb": 0.02},
-    "spring.k_knee_1": {"spring.knee_1": 0.0},
-    "spring.k_knee_2": {"spring.knee_2": 0.0},
     "motor.stribeck": {"motor.tau_coulomb": 0.02, "motor.v_stribeck": 5.0},
     # By tau the stiffness is negative.
     "limit.relative_std": {"limit.relative_std": 1e12, "modality": 2},
@@ -50,8 +48,6 @@ CHANGED = {
     "regression.slow": 1e3,
     "torque.held": 1,
     "motor_c.B": 1.29e-6,
-    "link.mgl": 1.0,
-    "contact.k": 1e3,
 }
 
 
