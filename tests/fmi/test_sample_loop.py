@@ -41,7 +41,7 @@ def test_a_library_that_cannot_be_used(
     name: str, value: object, reason: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(native, name, value)
-    with pytest.raises(FmuError, match=rf"native.*: not a usable library \(.*{reason}.*again"):
+    with pytest.raises(FmuError, match=rf"native.*: cannot load this \(.*{reason}.*again"):
         native.library.__wrapped__()
 
 

@@ -78,7 +78,7 @@ def out_option(what: str, default: str) -> Callable[[_Command], _Command]:
         if name == "":
             raise click.BadParameter("expected a folder, got an empty name.")
         if Path(name).is_file():
-            raise click.BadParameter(f"{name} is a file; name a folder.")
+            raise click.BadParameter(f"expected a folder, got the file {name}.")
         return Path(name)
 
     shown = re.sub("{(.*?)}", lambda parameter: parameter[1].upper(), default)

@@ -54,10 +54,10 @@ def _limit(name: str, text: str) -> click.Option:
 @click.option(
     "--after",
     type=common.PATH,
-    help="Log of the joint, which shows what its motion has to be; CONFIG belongs to this log.",
+    help="Earlier log of this joint, to adapt the motion to it; CONFIG describes this log.",
 )
 @common.out_option("Folder to write into.", "motion")
-@click.option("--joint", metavar="NAME", default="", help="Which of several joints of CONFIG.")
+@click.option("--joint", metavar="NAME", default="", help="Joint of CONFIG, if it has several.")
 @common.answer_options
 def motion(
     config: Path | None,

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 @click.option(
     "--start-from",
     type=common.PATH,
-    help="Go on from what was learned before: the folder of another log, or its state.json.",
+    help="Continue the estimation of another log: its folder of results, or the state.json in it.",
 )
 @click.option(
     "--to",
@@ -114,12 +114,12 @@ def _import(module: str) -> None:
     "config",
     required=True,
     type=common.FILE,
-    help="Configuration with which `sigmahat estimate` learned from the first log.",
+    help="Configuration with which `sigmahat estimate` read the first log.",
 )
 @click.option(
     "--start-from",
     type=common.PATH,
-    help="What was learned: its folder, or state.json.  [default: sigmahat-results/CONFIG]",
+    help="Estimate to test: its folder, or state.json.  [default: sigmahat-results/CONFIG]",
 )
 @common.joint_option
 @common.answer_options
@@ -158,8 +158,8 @@ _SUFFIXES = {**_START_VALUES, **_MODELS}
     "--to",
     required=True,
     type=click.Choice(list(_SUFFIXES)),
-    help="Start values: ssv, a parameter set for SSP; matlab, a function; modelica, a record. "
-    "Joint for a simulator: mjcf (MuJoCo), sdf (Gazebo), urdf, drake (SDF for Drake).",
+    help="Format. Start values of the FMU: ssv (for SSP), matlab or modelica. "
+    "Model of the joint: mjcf (MuJoCo), sdf (Gazebo), urdf, drake (SDF for Drake).",
 )
 @click.option(
     "--out",

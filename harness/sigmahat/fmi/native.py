@@ -41,5 +41,5 @@ def library() -> ctypes.CDLL:
             function = getattr(found, name)
             function.restype, function.argtypes = result, arguments
     except (OSError, AttributeError) as error:
-        raise FmuError(f"{path}: not a usable library ({error}); install or build again") from error
+        raise FmuError(f"{path}: cannot load this ({error}); install or build it again") from error
     return found

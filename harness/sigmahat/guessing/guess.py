@@ -87,7 +87,7 @@ def one_joint(log: Log, joints: Mapping[str, JointGuess], name: str) -> JointGue
             return joint
     named = [each for each in joints if each]
     if not named:
-        raise LogError(f"{log.path}: its columns name no joints; leave --joint out")
+        raise LogError(f"{log.path}: its column names contain no joint; omit --joint")
     raise LogError(f"{log.path}: {unknown('joint', name, named)}")
 
 

@@ -217,8 +217,8 @@ def _check(configuration: Configuration, torque_constant: bool) -> None:
             raise LogError(f"{configuration.path}: identify needs [ports.{name}]{why}; add it")
     if torque_constant and configuration.ports["tau"].torque_constant is None:
         raise LogError(
-            f"{configuration.path}: [ports.tau] is not in A with a torque_constant; "
-            "leave --torque-constant out"
+            f"{configuration.path}: expected [ports.tau] in A with a torque_constant; "
+            "add both, or omit --torque-constant"
         )
 
 

@@ -109,7 +109,7 @@ class Estimator:
         shape = arrays["theta"].shape
         if len(shape) not in (1, 2) or any(each.shape != shape for each in arrays.values()):
             shapes = ", ".join(f"{name} {each.shape}" for name, each in arrays.items())
-            raise ValueError(f"expected arrays of one shape, (N,) or (joints, N), got {shapes}")
+            raise ValueError(f"expected equal shapes, (N,) or (joints, N), got {shapes}")
         self._take_shape(shape[:-1])
         joints, samples = len(self._joints.memory), shape[-1]
         outputs = {name: self._joints.empty(name, joints, samples) for name in self._record}
@@ -138,7 +138,7 @@ class Estimator:
             needed = self._need(dict(zip(INPUTS, values, strict=True)))
             shapes = {np.shape(each) for each in values if each is not None} - {()}
             if len(shapes) > 1 or any(len(shape) > 1 for shape in shapes):
-                raise ValueError(f"expected numbers or arrays of one shape (joints,), got {shapes}")
+                raise ValueError(f"expected numbers, or arrays of shape (joints,), got {shapes}")
             self._take_shape(shapes.pop() if shapes else self._shape or ())
             self._tick = self._prepared(needed)
         return self._tick(values)
@@ -190,7 +190,7 @@ class Estimator:
         """
         for name in parameters:
             if self._joints.fmu.variable(name, "parameter").variability != "tunable":
-                raise ValueError(f"{name} is fixed: give it when the estimator is made")
+                raise ValueError(f"{name} cannot be changed: make a new Estimator with it")
         before = self._joints.memory.copy()
         try:
             for joint in range(len(before)):
@@ -216,7 +216,7 @@ class Estimator:
         return self.__copy__()
 
     def __reduce__(self) -> str:
-        raise TypeError("an Estimator cannot be pickled; make one where it is needed")
+        raise TypeError("an Estimator cannot be pickled; make one in each process")
 
     def _compare_with_range(self, thetas: Array, qs: Array) -> None:
         """Logs a warning, once, if the motion is far from range.phi, by which priors are scaled."""

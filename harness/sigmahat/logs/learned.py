@@ -19,7 +19,7 @@ from sigmahat.logs.log import LogError
 from sigmahat.logs.replay import gap
 
 _AGAIN = "run `sigmahat estimate` on the first log again"
-_OTHER = f"a learned state contains its parameters: use these parameters, or {_AGAIN}"
+_OTHER = f"both must have the same parameters: change the configuration, or {_AGAIN}"
 
 
 @dataclass(frozen=True)
@@ -81,7 +81,7 @@ def read_learned(path: Path) -> Learned:
     try:
         state = base64.b64decode(file.state, validate=True)
     except ValueError as error:
-        raise LogError(f"{path}: damaged: state is not base64; {_AGAIN}") from error
+        raise LogError(f"{path}: damaged: its state is not base64; {_AGAIN}") from error
     return Learned(path, file.fmu, file.logs, state)
 
 
@@ -96,8 +96,8 @@ def go_on(slave: Slave, learned: Learned, every: Mapping[str, Value], configurat
     """
     theirs, ours = learned.fmu, FmuId.of(slave.fmu)
     if theirs != ours:
-        told, wanted = (f"{f.name}.fmu {f.version} ({f.guid})" for f in (theirs, ours))
-        raise LogError(f"{learned.path}: learned by {told}, expected {wanted}; {_AGAIN}")
+        found, wanted = (f"{f.name}.fmu {f.version} ({f.guid})" for f in (theirs, ours))
+        raise LogError(f"{learned.path}: state of {found}, expected {wanted}; {_AGAIN}")
     try:
         t_0 = slave.restore(learned.state)
     except FmuError as error:
@@ -109,7 +109,7 @@ def go_on(slave: Slave, learned: Learned, every: Mapping[str, Value], configurat
         name = min(differ, key=lambda each: first.get(each, 2))
         more = f" (and {len(differ) - 1} more)" if len(differ) > 1 else ""
         raise LogError(
-            f"{configuration}: {name} = {every[name]}, but {learned.path} was learned with "
+            f"{configuration}: {name} = {every[name]}, but {learned.path} was written with "
             f"{own[name]}{more}; {_OTHER}"
         )
     return gap(slave, t_0, every)

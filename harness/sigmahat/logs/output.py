@@ -214,7 +214,7 @@ class EstimateTable(Mapping[str, NDArray[np.float64]]):
         self.units = dict(names)  # unit of each output, None for flags
         self._titles = dict(zip(self.units, titles, strict=True))
         if not self.units.keys() >= {*_TIMES, "sigma", _VALID, _DOUBT}:
-            raise LogError(f"{path}: no table of `sigmahat estimate`; run it again")
+            raise LogError(f"{path}: expected a table of `sigmahat estimate`; run it again")
         del self._titles[_DOUBT]
         self.t = self._log.read(self._titles.pop(_TIME))  # times of the rows [s]
         self.used = self._log.read(self._titles.pop(_VALID)).astype(np.bool_)

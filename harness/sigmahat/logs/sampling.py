@@ -73,7 +73,7 @@ def _sample(log: Log, configuration: Configuration, T: float) -> Samples:
     step = float(np.nanmedian(np.diff(rows))) if len(rows) > 1 else T
     if step > _MOST_TICKS_PER_ROW * T:
         raise LogError(
-            f"{log.path}: most rows are {step:g} s apart, the ticks {T:g} s; "
+            f"{log.path}: samplePeriod is {T:g} s, but most rows are {step:g} s apart; "
             "check time.unit and samplePeriod"
         )
     ticks = int(np.floor((end - start) / T + AT_TICK)) + 1
@@ -81,9 +81,8 @@ def _sample(log: Log, configuration: Configuration, T: float) -> Samples:
     if ticks > most:
         gap = float(np.max(np.diff(rows[np.isfinite(rows)])))
         raise LogError(
-            f"{log.path}: {end - start:g} s in steps of {T:g} s are {ticks} ticks, expected at "
-            f"most {most}; the longest gap is {gap:g} s: split the log at the pause, or take a "
-            "longer samplePeriod"
+            f"{log.path}: {ticks} steps of {T:g} s in {end - start:g} s, expected at most {most}; "
+            f"the longest gap is {gap:g} s: split the log there, or increase samplePeriod"
         )
     notes.insert(0, f"{len(rows)} rows over {end - start:.6g} s; {ticks} ticks of {T:g} s")
     rows -= start
@@ -104,7 +103,7 @@ def _sample(log: Log, configuration: Configuration, T: float) -> Samples:
         values[:, i] = _at_ticks(name, t, column, T, ticks, configuration.time.longest_gap, notes)
         if not np.isfinite(values[:, i]).any():
             raise LogError(
-                f"port {name}: no sample of its column lies in the {end - start:g} s of the log; "
+                f"port {name}: its column has no sample in the {end - start:g} s of the log; "
                 "check its delay, and time.longest_gap"
             )
     notes += _put_right(values, configuration.ports, T)
@@ -170,8 +169,8 @@ def _column(log: Log, name: str, port: Port, times: int, notes: list[str]) -> Ar
     values = log.read(port.column)
     if len(values) != times:
         raise LogError(
-            f"{log.path}: column {port.column!r} has {len(values)} samples, its time {times}; "
-            f"name its own times in ports.{name}.time"
+            f"{log.path}: column {port.column!r} has {len(values)} samples, its time column "
+            f"{times}; name the right time column in ports.{name}.time"
         )
     if port.wrap is not None:
         values, jumps = unwrap(values, port.wrap)
@@ -197,7 +196,7 @@ def _at_ticks(
     finite = np.isfinite(t) & np.isfinite(values)
     if not finite.any():
         raise LogError(
-            f"port {name}: its column holds no number; name another column, or remove the port"
+            f"port {name}: its column has no numbers; name another column, or remove the port"
         )
     if not finite.all():
         t, values = t[finite], values[finite]

@@ -58,7 +58,7 @@ class PlantEquations:
         of each of its steps far below ``scale + |state|`` (``fmu_src/radau.h``).
         """
         if not 0 < scale < math.inf:
-            raise ValueError(f"state {name}: scale = {scale}; expected a finite number above 0")
+            raise ValueError(f"state {name}: expected a finite scale above 0, got {scale}")
         if name in self.states:
             raise ValueError(f"{self.name}: state {name} is declared twice")
         symbol = ca.SX.sym(name)

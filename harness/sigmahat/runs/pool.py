@@ -45,7 +45,7 @@ def spread(
         for future in as_completed(places):
             yield places[future], future.result()
     except BrokenProcessPool as error:
-        raise WorkersLostError("a process was ended from outside") from error
+        raise WorkersLostError("another program ended a worker process") from error
     finally:
         executor.shutdown(cancel_futures=True)
 

@@ -89,7 +89,7 @@ def sweep(
             raise OSError(errno.EIO, reason, str(out / NAME)) from error
         failures = [each.failure for each in outcomes if each.failure]
         if len(failures) == plan.count:
-            raise ValueError(f"every run failed, the first with: {failures[0]}")
+            raise ValueError(f"every run failed; message of the first: {failures[0]}")
         table = of_outcomes(plan, outcomes)
         from sigmahat.plotting.figure import save, stacked
         from sigmahat.sweep.panels import against_parameters, distributions
@@ -120,5 +120,5 @@ def all_outcomes(
                     records.add(missing[place], outcome)
                 progress(1)
     except WorkersLostError as error:
-        raise WorkersLostError(f"{error}; run the command again for what is left") from error
+        raise WorkersLostError(f"{error}; run the command again for the missing runs") from error
     return [each for each in outcomes if each is not None]

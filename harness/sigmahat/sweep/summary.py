@@ -94,7 +94,7 @@ def summary(sweep: SweepTable) -> str:
         lines.append(f"... {len(rows) - _ROWS} more rows in summary.csv")
     failures = [each for each in sweep.values(FAILURE) if each]
     if failures:
-        lines.append(f"\nfailed, the first with: {failures[0]}")
+        lines.append(f"\nfailed; message of the first: {failures[0]}")
     return "\n".join(lines)
 
 

@@ -245,7 +245,7 @@ def validate(log: Log, configuration: Configuration, start_from: str | Path) -> 
         samples = job.samples
         complete = samples.values[np.isfinite(samples.values).all(axis=1)]
         if not len(complete):
-            raise LogError(f"{log.path}: no instant at which every port has a value")
+            raise LogError(f"{log.path}: expected values of all ports at the same time, found none")
         points = complete[:: -(-len(complete) // _INSTANTS)]
         start = sheet.start_values(slave, every)
         before = stiffness_at(slave, samples.names, points, job.t, samples.T)

@@ -56,19 +56,18 @@ def check_packed(path: Path) -> None:
                 unpacked += len(variable)
             if unpacked > most:
                 raise LogError(
-                    f"{path}: more than {most / 1e6:.0f} MB in a file of {size / 1e6:.3g} MB; "
-                    "save it without compression (-v6), or in parts"
+                    f"{path}: expected at most {most / 1e6:.0f} MB of data in {size / 1e6:.3g} MB, "
+                    "got more; save it without compression (-v6), or in parts"
                 )
             for found in _kinds(variable, tag):
                 elements += 1
                 if found not in _KINDS:
                     raise LogError(
-                        f"{path}: damaged MAT file (no element is of the kind {found}); "
-                        "save it again"
+                        f"{path}: damaged MAT file (element of unknown type {found}); save it again"
                     )
                 if elements > _MOST_ELEMENTS:
                     raise LogError(
-                        f"{path}: more than {_MOST_ELEMENTS} cells and fields; "
+                        f"{path}: expected at most {_MOST_ELEMENTS} cells and fields, got more; "
                         "save the columns as vectors"
                     )
 
@@ -143,7 +142,7 @@ def read_hdf5(path: Path) -> LogInMemory:
 
     def walk(group: h5py.Group, above: str, depth: int = 0) -> Named:
         if depth > _DEEPEST:
-            raise LogError(f"{path}: groups in more than {_DEEPEST} groups, or in a circle")
+            raise LogError(f"{path}: expected at most {_DEEPEST} levels of groups, got more")
         for name in group:
             if name.startswith("#"):  # the contents of cells, in files of MATLAB
                 continue
@@ -171,7 +170,7 @@ def read_hdf5(path: Path) -> LogInMemory:
     except LogError:
         raise
     except (OSError, RuntimeError, KeyError, ValueError, TypeError) as error:
-        raise LogError(f"{path}: not a whole HDF5 file ({error}); copy it again") from error
+        raise LogError(f"{path}: incomplete HDF5 file ({error}); copy it again") from error
 
 
 def _elsewhere(path: Path, name: str, file: str) -> LogError:
@@ -205,5 +204,5 @@ def _log(path: Path, columns: Named) -> LogInMemory:
         check_columns(path, len(arrays))
         check_bytes(path, size)
     if not arrays:
-        raise LogError(f"{path}: no vector or matrix of numbers in it")
+        raise LogError(f"{path}: expected a vector or matrix of numbers, found none")
     return LogInMemory(path, arrays)
