@@ -1,8 +1,7 @@
 /* A co-simulation master in plain C for StiffnessEstimator.fmu: docs/how-to/c-master.md.
  *
- * master FOLDER LIBRARY: the folder of the unpacked FMU and its shared library. Feeds the
- * estimator with a joint that swings once per second and has a spring of 150 N.m/rad with a
- * torque sensor, for two seconds, and prints the stiffness found.
+ * master FOLDER LIBRARY: the folder of the unpacked FMU and its shared library. Feeds the estimator for two seconds,
+ * and prints the stiffness. The joint swings once per second, and has a spring of 150 N.m/rad and a torque sensor.
  */
 #include <dlfcn.h>
 #include <math.h>

@@ -49,7 +49,7 @@ plant.output("tau_measured", tau + plant.noise(plant.parameter("noise.variance")
 plant.output("sigma", k_1 * ca.cosh(phi / phi_0))
 plant.output("phi", phi)
 
-# What the model description says of them: unit, description, start value.
+# Data for the model description: unit, description, start value.
 variables = {
     "tau": PlantVariable("N.m", "Torque of the motor, before its gear"),
     "link.M": PlantVariable("kg.m2", "Inertia of the pendulum", 0.1),

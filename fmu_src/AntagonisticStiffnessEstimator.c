@@ -1,5 +1,5 @@
-/* Binding of two estimators, one for each motor of an antagonistic pair. They share the encoder of
- * the link. The stiffness of the device is the sum of the two, section II.
+/* Binding of two estimators, one for each motor of an antagonistic pair. Both sides share the encoder of the link.
+ * The stiffness of the device is the sum of the two, section II.
  */
 #include <math.h>
 
@@ -28,7 +28,7 @@ static sh_parameters parameters_of(const AntagonisticStiffnessEstimator *fmu, in
     return p;
 }
 
-/* Why the sum is not confident. One side alone may move too little, if the sum is certain enough. */
+/* Why the sum is not confident. If the sum is certain enough, one side alone may move too little. */
 static int doubt_of_sum(const AntagonisticStiffnessEstimator *fmu)
 {
     const int one = fmu->side[0].output.doubt, other = fmu->side[1].output.doubt;

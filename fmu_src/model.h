@@ -1,9 +1,8 @@
-/* What a model provides for the FMI shell (shell/, fmi2/, fmi3/): one constant of type sh_model.
+/* A model provides one constant of type sh_model for the FMI shell (shell/, fmi2/, fmi3/).
  *
  * A model is one plain struct without pointers that holds parameters, inputs,
- * outputs and state. The shell allocates this struct, accesses its variables through
- * the table generated from the model description, and copies the whole struct to save
- * and restore the state of the FMU.
+ * outputs and state. The shell allocates this struct, and accesses its variables through the table generated from the
+ * model description. To save and restore the state of the FMU, the shell copies the whole struct.
  */
 #ifndef SH_MODEL_H
 #define SH_MODEL_H
@@ -29,7 +28,7 @@ typedef enum {
     SH_ROLE_TUNABLE /* parameter, also settable between steps */
 } sh_role;
 
-/* One variable. Its value reference is its index in the table. */
+/* One variable. The value reference of a variable is its index in the table. */
 typedef struct {
     const char *name;
     size_t offset; /* in the model's struct, of a double (Real) or an int */

@@ -30,9 +30,8 @@ double sh_noise_normal(int seed, uint64_t k, unsigned channel)
     state = next_bits(&state) + k;
     state = next_bits(&state);
 
-    /* Ratio of uniforms: Kinderman, Monahan, ACM Trans. Math. Softw. 3 (1977). The last bit of the
-     * logarithm depends on the platform, but the logarithm only decides whether a pair is accepted;
-     * the value does not depend on it.
+    /* Ratio of uniforms: Kinderman, Monahan, ACM Trans. Math. Softw. 3 (1977). The last bit of the logarithm depends
+     * on the platform. But the logarithm only decides whether a pair is accepted, and has no effect on the value.
      */
     do {
         const double v = 1.7155277699214135 * (uniform(&state) - 0.5); /* sqrt(8/e) */

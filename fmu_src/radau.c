@@ -200,8 +200,8 @@ static int solve_stages(const double *x, const double *u, const double *du, cons
     return 0;
 }
 
-/* Estimated error of a step with the stages x + Z, as a multiple of the allowed error: the part of
- * this error that remains after `followers` more steps of this length.
+/* Estimated error of a step with the stages x + Z, as a multiple of the allowed error. It is the part that remains
+ * after `followers` more steps of this length.
  *
  * A motion that decays in these steps need not be resolved. A step multiplies a mode by R(z), where
  * the exact solution has exp(z). On the whole negative axis R(z) is below 1 / (1 - z / REAL), and
@@ -221,7 +221,7 @@ static double estimate_error(double (*Z)[STATES], const double *f, const double 
     }
     solve_real(factors, error);
     size = norm(error, weight) / ERROR_TOLERANCE;
-    /* `size` counts fast modes fully. But the step itself damps these modes, too. */
+    /* `size` counts fast modes fully. But the step itself also damps these modes. */
     for (; followers >= 0 && size > 1.0; --followers) {
         for (j = 0; j < STATES; ++j) {
             error[j] *= REAL / h;
@@ -232,9 +232,9 @@ static double estimate_error(double (*Z)[STATES], const double *f, const double 
     return size;
 }
 
-/* One step from x to x_new, with factors for its length h. Returns the part of its error that is left
- * after `followers` more steps of this length, as a multiple of the allowed error, the largest over
- * the states; infinite or not a number without a solution.
+/* One step from x to x_new, with factors for its length h. Returns the error that is left after `followers` more
+ * steps of this length, as a multiple of the allowed error: the largest over the states. Without a solution, it is
+ * infinite or not a number.
  */
 static double take(const double *x, const double *u, const double *du, const double *p, double h,
                    int followers, const double *factors, double *x_new)

@@ -8,15 +8,15 @@
 #ifndef SH_RADAU_H
 #define SH_RADAU_H
 
-/* Advances x by duration > 0 in steps, with the allowed error at the end of the duration: for each
- * state 1e-8 (scale + |x|), with the scale of the plant. A motion that decays before the end is
+/* Advances x by duration > 0 in steps. The allowed error at the end is 1e-8 (scale + |x|) for each state, with the
+ * scale of the plant. A motion that decays before the end is
  * resolved only as far as this motion changes x at the end.
  *
  * *h in: the step to try first, infinite if unknown; out: the step to try first after this
  * duration.
  *
- * Returns the number of steps. Returns 0 if the error of even a negligible step is too large, or
- * after sh_radau_attempts(duration) attempts; x is then the state after the last good step.
+ * Returns the number of steps. Returns 0 if the error of even a negligible step is too large, or after
+ * sh_radau_attempts(duration) attempts. Then x is the state after the last good step.
  */
 int sh_radau_integrate(double *x, const double *u, const double *du, const double *p,
                        double duration, double *h);

@@ -1,4 +1,4 @@
-"""Where the tests find what the build made, and which tests run first."""
+"""Paths of the build for the tests, and which tests run first."""
 
 import os
 import sys

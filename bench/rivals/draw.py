@@ -1,11 +1,11 @@
 """Draws joints at random, from ranges that are stated here. Nothing is tuned to any method.
 
-A range is log-uniform if its name begins with LOG_, else uniform. Draws that no designer would make
-are drawn again: a motor that does not match its load, a joint that swings slower or faster than
-joints do, an encoder that cannot see the deformation, a motor too weak to hold its arm.
+A range is log-uniform if its name begins with LOG_, else uniform. Implausible draws are repeated: a
+motor that does not match its load, a resonance that is too low or too high, an encoder too coarse
+for the deformation, a motor too weak for its arm.
 
-Nobody tunes on the seeds of docs/rivals.md, 9001 to 9040: they were fixed in the commit that
-brought the joints, before any method saw one of them. The seeds of a second look are 9101 to 9140,
+Do not use the seeds of docs/rivals.md, 9001 to 9040, for tuning: the commit that added the joints
+fixed these seeds, before any method was run. The seeds of a second look are 9101 to 9140,
 fixed before they were run, too. All other seeds are for development.
 """
 
@@ -38,7 +38,7 @@ LOG_PEAK_BY_B: Range = (3e3, 15e3)  # peak torque by inertia [rad/s2]
 LOG_D_BY_B: Range = (1.0, 30.0)  # [1/s]
 LOG_STICTION_TIME: Range = (1e-3, 1e-2)  # [s]
 
-# Its friction, with one of the models M1 to M6. Torques by the peak torque.
+# Friction of the joint, with one of the models M1 to M6. Torques by the peak torque.
 LOG_DRY: Range = (0.005, 0.08)
 STATIC_SHARE: Range = (0.0, 0.6)  # share of the dry friction at rest that motion takes away
 LOG_V_S: Range = (0.05, 2.0)  # [rad/s]
@@ -302,8 +302,8 @@ def _position_drive(
 
 
 def _single(rng: Rng, load: float, stiffness: float) -> dict[str, Any]:
-    """A joint with one motor, all but its spring; the link is a rod. Its axis is horizontal if the
-    motor can lift the link, in half of the cases."""
+    """A joint with one motor, all but its spring; the link is a rod. In half of the cases the axis
+    is horizontal, if the motor can lift the link."""
     motor = _motor(rng, load)
     length = _even(rng, LENGTHS)
     mass = 3 * load / length**2

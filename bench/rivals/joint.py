@@ -1,4 +1,4 @@
-"""What a joint is made of. `draw.py` draws the values, `simulation.py` builds what they say."""
+"""The parts of a joint. `draw.py` draws the values, `simulation.py` builds what they say."""
 
 import math
 from collections.abc import Mapping
@@ -40,7 +40,7 @@ class Friction:
 
     @property
     def at_rest(self) -> float:
-        """What resists at rest without load [N.m]."""
+        """Friction at rest without load [N.m]."""
         return self.K_c + self.K_cs
 
     def budget(self, v: float, tau_m: float, tau_e: float) -> float:

@@ -77,7 +77,7 @@ def log(kind: str, seed: int, run: Run, joint: Joint, rng: np.random.Generator) 
 
 
 def _rounded(angle: Array, counts: int) -> Array:
-    """What an encoder with this number of counts a turn reads [rad]; it counts on past a turn."""
+    """Angle of an encoder with this number of counts a turn [rad]; it counts on past a turn."""
     count = 2 * math.pi / counts
     read: Array = np.round(angle / count) * count
     return read

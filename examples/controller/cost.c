@@ -1,5 +1,5 @@
-/* What the estimator costs on this controller: instructions and stack of a tick, RAM of an
- * instance. The orders are 6 in the deformation and 3 in the set-point, or SH_MAX_N and SH_MAX_M
+/* Cost of the estimator on this controller: instructions and stack of a tick, RAM of an instance. The orders are 6 in
+ * the deformation and 3 in the set-point, or SH_MAX_N and SH_MAX_M
  * if these are smaller.
  */
 #include <math.h>

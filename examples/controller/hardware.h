@@ -1,4 +1,4 @@
-/* What main.c needs from the hardware. Write these functions for yours. */
+/* The functions that main.c needs from the hardware. Write these functions for yours. */
 #ifndef HARDWARE_H
 #define HARDWARE_H
 

@@ -62,8 +62,8 @@ void hardware_enable_interrupts(void)
     __asm volatile("cpsie i" ::: "memory");
 }
 
-/* A motor with the data of the start values that swings by 0.5 rad at 1 Hz, and a transmission
- * of 150 N.m/rad: the motor equation (3) of the paper gives the torque.
+/* The motor has the data of the start values, and swings by 0.5 rad at 1 Hz. The transmission has 150 N.m/rad. The
+ * motor equation (3) of the paper gives the torque.
  */
 sh_measurement hardware_read(void)
 {

@@ -1,6 +1,6 @@
 /* The estimator in the interrupt of a control loop at 1 kHz: docs/controller.md.
  *
- * It runs for three seconds, changes a parameter after two, and prints the stiffness.
+ * The program runs for three seconds, changes a parameter after two, and prints the stiffness.
  */
 #include <stdio.h>
 
@@ -14,7 +14,7 @@ static sh_parameters parameters;
 static sh_estimator estimator;
 static sh_estimate estimate;
 
-/* From the interrupt to the main loop. The processor reads a number of one word as a whole. */
+/* Data from the interrupt to the main loop. The processor reads a number of one word as a whole. */
 static volatile sh_real sigma, sigma_std;
 static volatile uint32_t ticks, longest, missed;
 

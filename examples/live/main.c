@@ -65,7 +65,7 @@ static int start(void)
     return 0;
 }
 
-/* Asks for what keeps the loop on time. Without the right to it, it runs as it is. */
+/* Asks for what keeps the loop on time. Without the right to use it, the program runs with its usual priority. */
 static void ask_for_priority(void)
 {
     const struct sched_param priority = {.sched_priority = PRIORITY};
@@ -78,7 +78,7 @@ static void ask_for_priority(void)
     }
 }
 
-/* One line for PlotJuggler and `sigmahat`; nobody need listen. */
+/* Sends one line for PlotJuggler and `sigmahat`; no listener is needed. */
 static void send_estimate(int out, double t)
 {
     char line[512];

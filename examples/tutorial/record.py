@@ -1,7 +1,7 @@
 """Records knee.csv, the log of the tutorial: a knee with a series elastic actuator, simulated.
 
-The spring hardens with its deformation, the motor has Coulomb friction. 20 s at 250 Hz; the motor
-encoder is a counter of 16 bits that wraps, the link is in degrees, the current in amperes.
+The spring hardens with its deformation, and the motor has Coulomb friction. The log has 20 s at 250
+Hz. The motor encoder is a counter of 16 bits, the link is in degrees, the current in amperes.
 
 Usage: python record.py [FOLDER]     writes knee.csv there, always the same bytes
 """

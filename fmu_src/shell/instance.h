@@ -17,7 +17,7 @@ typedef enum {
     SH_ANY = 15
 } sh_state;
 
-/* What the importer gave to the instance. Any of it may be NULL. */
+/* Arguments of the importer for the instance. Any of it may be NULL. */
 typedef struct {
     void *environment;
     void (*logger)(void); /* function for messages; sh_deliver knows the type */

@@ -14,8 +14,8 @@ enum {
     SH_LOG_ALL = 15
 };
 
-/* Each version of FMI has its own character that has a meaning in messages, which sh_report writes
- * twice, and its own function that gives a message to the importer's logger, which is not NULL.
+/* Each version of FMI has its own escape character in messages, which sh_report writes twice. Each version also has
+ * its own function that gives a message to the importer's logger, which is not NULL.
  */
 extern const char sh_special;
 void sh_deliver(const sh_instance *instance, sh_status status, const char *category,

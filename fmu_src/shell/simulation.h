@@ -1,4 +1,4 @@
-/* What can be done with an instance, the same in every version of FMI.
+/* Operations on an instance, the same in every version of FMI.
  *
  * The functions of FMI (fmi2/, fmi3/) only translate arguments and status. Each function here that
  * takes the name of a function of FMI begins its messages with this name.
@@ -50,8 +50,8 @@ void sh_release(const sh_importer *importer, void *memory);
 /* The course of a simulation. `handle` is from the importer, and may be NULL. */
 
 /* Start and end of the experiment that the importer announces [s]; without an end, it is infinite.
- * Refuses times that are not finite or in the wrong order, and a tolerance that is negative or not finite;
- * else the tolerance has no effect, and is 0 if the importer gives none.
+ * Refuses times that are not finite or in the wrong order, and a tolerance that is negative or not finite. Otherwise
+ * the tolerance has no effect. It is 0 if the importer gives none.
  */
 sh_status sh_set_up(void *handle, double tolerance, double start_time, double stop_time,
                     const char *function);

@@ -42,8 +42,8 @@ def step(factor: float, at: float = AT) -> Callable[[Array], Array]:
     ("factor", "frequency"), [(2.0, 0.5), (0.5, 0.5), (1.3, 1.0), (2.0, 3.0), (1.3, 3.0)]
 )
 def test_a_step_of_the_stiffness_is_followed(c: Library, frequency: float, factor: float) -> None:
-    """GIVEN a stiffness that changes at 15 s, THEN this is detected, the estimate is hardly ever
-    confident and wrong by 20 %, and at the end it is right and confident, with the same motor."""
+    """GIVEN a stiffness that changes at 15 s, THEN this is detected. The estimate is hardly ever
+    confident and wrong by 20 %. At the end it is right and confident, with the same motor."""
     joint = Joint(
         duration=30.0, frequency=frequency, amplitude=0.8 / frequency, stiffness=step(factor)
     )
@@ -157,8 +157,8 @@ def test_a_misfit_is_no_change(c: Library, joint: Joint, parameters: dict[str, f
     ids=lambda change: " ".join(f"{name} {value:g}" for name, value in change.items()),
 )
 def test_friction_that_changes_is_told_from_the_spring(c: Library, change: dict[str, Any]) -> None:
-    """GIVEN friction that changes at 12 s, in two motions with six seeds, THEN a change of the
-    spring is reported in a quarter of the runs at most, and the stiffness is right 10 s later."""
+    """GIVEN friction that changes at 12 s, in two motions with six seeds, THEN at most a quarter of
+    the runs report a change of the spring, and the stiffness is right 10 s later."""
     reported = 0
     for kind, seed in product((MisfitJoint, Joint), range(1, 7)):
         slow: dict[str, Any] = {"frequency": 0.5, "amplitude": 1.6} if kind is Joint else {}

@@ -34,7 +34,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @cache
 def cost(tree: Path) -> str:
-    """What a build of examples/controller costs: memory, stack, and instructions of a tick."""
+    """Cost of a build of examples/controller: memory, stack, and instructions of a tick."""
     return run("cmake", "--build", str(tree), "--target", "cost")
 
 
@@ -119,7 +119,7 @@ def test_smaller_sizes_cost_what_the_page_says(
 ) -> None:
     """The table of seven joints in docs/controller.md. Another compiler may differ a little.
 
-    What there is no memory for is refused.
+    Parameters that need more memory than there is are refused.
     """
     sizes = (f"SH_MAX_N={n}", f"SH_MAX_M={m}", f"SH_MAX_COLUMNS={columns}")
     tree = cross_build("examples/controller", TARGETS["Cortex-M4F"], "float", folder, sizes)

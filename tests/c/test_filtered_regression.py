@@ -55,8 +55,8 @@ def test_a_link_that_is_read_late_looks_like_friction_below_0(
 
 
 def test_rounding_alone_does_not_change_the_inertia(c: Library) -> None:
-    """GIVEN a motor that is so slow that its inertia has no effect, WHEN it has turned for a long
-    time, THEN B_hat is about the same as before, although theta'' consists of rounding errors."""
+    """GIVEN a motor so slow that its inertia has no effect, WHEN it has turned for a long time,
+    THEN B_hat has hardly changed, although theta'' consists of rounding errors."""
     joint = Joint(duration=40.0, frequency=0.02, amplitude=30.0, B=1.1 * 2.3e-5)
     estimator = Estimator(c, ALL)
     found = estimator.run(joint.measurements())

@@ -36,8 +36,8 @@ OUTPUTS: dict[str, tuple[dict[str, Any], tuple[str, ...]]] = {
 @pytest.mark.parametrize(("way", "gamma"), [(1, -50.0), (-1, 50.0)])
 @pytest.mark.parametrize("output", OUTPUTS)
 def test_each_misfit_is_estimated(c: Library, output: str, way: int, gamma: float) -> None:
-    """The output has the true value within its accuracy, which is a small part of it, with the
-    right sign whatever the gear; and the stiffness is right."""
+    """The output has the true value within a small tolerance, with the right sign for every gear;
+    and the stiffness is right."""
     if output == "hysteresis_hat":
         way = 1  # no hysteresis gives energy
     misfit, columns = OUTPUTS[output]

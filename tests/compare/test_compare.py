@@ -68,8 +68,8 @@ def test_better_than_the_paper_in_every_row_with_wrong_motor_data(runs: list[lis
 
 
 def test_finds_the_error_of_the_friction(runs: list[list[Row]]) -> None:
-    """From 0.3 Hz on within 10 % of the error, on the AwAS. Not at 0.3 Hz if B is unknown too:
-    inertia and friction by the torque of the motor look alike there, and no accuracy is asked. At
+    """From 0.3 Hz on within 10 % of the error, on the AwAS. No accuracy is required at 0.3 Hz with
+    unknown B: there, inertia looks like friction that grows with the torque of the motor. At
     20 Hz, where the motor reverses every 25 ms, friction and a delay of its reversals look nearly
     alike: within 25 %. So with Coulomb friction at 0.3 Hz, where 20 seeds have a standard
     deviation of 12 %."""
@@ -88,8 +88,8 @@ def test_finds_the_error_of_the_friction(runs: list[list[Row]]) -> None:
 
 @pytest.mark.slow("many seeds")
 def test_start_up_with_exact_motor_data() -> None:
-    """GIVEN a joint that is known to have nothing but a spring and a motor, THEN the start-up is
-    near the bound of information; with the columns for what it may have, it takes longer."""
+    """GIVEN a joint that is known to have only a spring and a motor, THEN the start-up is near the
+    bound of information; with columns for further effects, it takes longer."""
     (table1,) = (joint for joint in JOINTS if joint.scenario.name == "table1")
     unknown, nominal = compare([without_misfits(table1)], range(1, 21), processes=2)
     assert unknown.error(REGRESSION) <= 0.30

@@ -2,9 +2,9 @@
  *
  * The bytes of the fuzzer choose the calls, one after the other, until there are no more bytes. Most
  * arguments are valid, because else no sequence would get past its first calls. The sanitizers look
- * for undefined behaviour and leaks. This program checks that a refused step does not change the
- * time, that an accepted one ends where it should, that a restored state gives the same step bit for
- * bit, that damaged states and wrong GUIDs are refused, and that the logger receives valid arguments.
+ * for undefined behaviour and leaks. This program checks these rules. A refused step does not change the time, and an
+ * accepted step ends at the right time. A restored state gives the same step bit for bit. Damaged states and wrong
+ * GUIDs are refused. The logger receives valid arguments.
  */
 #include <float.h>
 #include <locale.h>

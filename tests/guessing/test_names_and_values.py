@@ -129,8 +129,8 @@ def test_signs_and_zeros(m: Motion) -> None:
 
 
 def test_a_hand_on_the_link_leaves_the_sign_of_the_torque_open() -> None:
-    """GIVEN a motor that only holds its position, with springs of its controller, WHEN the link is
-    moved by hand THEN nobody is told a sign: the power of the torque has the other one there."""
+    """GIVEN a motor that holds its position by a controller, WHEN the link is moved by hand THEN no
+    sign is guessed, because the power of the torque has the opposite sign."""
     log = dict(log_by_hand(0.05))
     assert np.mean(log["current"] * np.gradient(log["motor_counts"])) < 0
     port = only(log).ports["tau"]

@@ -42,7 +42,7 @@ class Done:
     megabytes: float  # peak of the memory in RAM
 
     def complaint(self) -> str | None:
-        """What the command did that no file may make it do; None if all is well."""
+        """A forbidden action of the command that a file has caused; None without one."""
         if self.seconds > LONGEST:
             return f"took {self.seconds:.1f} s"
         if self.megabytes > MOST_MEMORY:

@@ -32,7 +32,7 @@ def modification(**values: Any) -> str:
 
 
 def compiled(text: str, model: str = "Test", package: Path = PACKAGE) -> rumoca.Model:
-    """A model that uses the package, compiled. It has as many equations as unknowns."""
+    """A model that uses the package, compiled. The model has as many equations as unknowns."""
     found = rumoca.Session(roots=[str(package)]).loads(text, model=model)
     assert found.structure().is_balanced
     return found

@@ -76,7 +76,7 @@ class Axis:
     estimated: Sequence[Estimated]
     """From run a, from run b, and from b after a."""
     validated: Sequence[dict[str, Any]]
-    """What `sigmahat validate --json` says of run b with a, and of a with b."""
+    """Output of `sigmahat validate --json` for run b with a, and for a with b."""
 
 
 def study(number: int, data: Path, place: Path) -> Axis:

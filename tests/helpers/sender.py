@@ -132,7 +132,7 @@ def running(
 
 
 def ended(process: subprocess.Popen[str], number: int = signal.SIGINT) -> tuple[str, str]:
-    """What the command prints after a signal."""
+    """Output of the command after a signal."""
     process.send_signal(number)
     out, err = process.communicate(timeout=60)
     assert process.returncode == 0, err

@@ -68,7 +68,7 @@ def served(*arguments: str, folder: Path, browser: str = "true") -> Iterator[Ser
 
 
 class Hand:
-    """What a user does in a window, by the names of the inputs."""
+    """Actions of a user in a window, by the names of the inputs."""
 
     def __init__(self, page: Page) -> None:
         self.page = page

@@ -89,7 +89,7 @@ Trial = tuple[str, dict[str, bytes]]
 
 
 def complaint_of(trial: Trial) -> str | None:
-    """What a command did that no file may make it do; its folder is removed."""
+    """A forbidden action of a command that a file has caused; its folder is removed."""
     command, files = trial
     with TemporaryDirectory() as folder:
         for name, content in files.items():

@@ -138,8 +138,8 @@ def test_a_log_that_is_more_than_it_seems(
 
 @pytest.mark.parametrize("value", [0x00, 0xFF])
 def test_a_parquet_file_with_a_damaged_description(value: int, run: Run) -> None:
-    """GIVEN one wrong byte in what the file says of its columns, THEN it is read or refused.
-    pyarrow ends the process for some of them, if it is asked for the size of a column."""
+    """GIVEN one wrong byte in the metadata of the columns, THEN the file is read or refused. For
+    some files, pyarrow ends the process if the size of a column is read."""
     whole = write_log(plain_log(300), Path("whole.parquet")).read_bytes()
     begin = len(whole) - 8 - int.from_bytes(whole[-8:-4], "little")
     for place in range(begin, begin + 70, 3):

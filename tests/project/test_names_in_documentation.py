@@ -1,4 +1,4 @@
-"""What the documentation names is there: files, functions. The build of the site checks links."""
+"""Files and functions that the documentation names exist. The build of the site checks links."""
 
 import re
 from functools import cache

@@ -1,7 +1,7 @@
 """The documentation as a site: the API, and how it looks in a browser.
 
-The build has checked that every page is in the navigation, and that Sphinx has nothing to warn of,
-such as a link that leads nowhere.
+The build has checked that every page is in the navigation, and that Sphinx gives no warning, for
+example of a broken link.
 """
 
 import re

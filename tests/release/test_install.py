@@ -1,4 +1,4 @@
-"""What pip makes of a fresh clone, in an environment with nothing else, used from another folder.
+"""The package that pip builds from a fresh clone, in an empty environment and another folder.
 
 Nothing of this tree is on a path of what runs here.
 """
@@ -59,7 +59,7 @@ def programs(clone: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def run(program: Path, *arguments: str, cwd: Path) -> str:
-    """What a program prints with nothing else on the path, and no error."""
+    """Output of a program with nothing else on the path, and no error."""
     environment = {**outside(), "PATH": str(program.parent)}
     command = [str(program), *arguments]
     done = subprocess.run(command, cwd=cwd, env=environment, capture_output=True, text=True)

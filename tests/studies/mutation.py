@@ -2,8 +2,8 @@
 
     build/venv/bin/python tests/studies/mutation.py [NUMBER [SEED]]
 
-changes one token (operator, comparison, constant, index, function) at one of NUMBER places, which
-are spread over all files of c/, and runs the tests of the library with this mutant. It prints the
+changes one token (operator, comparison, constant, index, function) at one of NUMBER places in all
+files of c/, and runs the tests of the library with this mutant. It prints the
 mutants that no test noticed. The places are chosen by a hash of SEED and of their line, so they
 stay the same if other lines of the code change.
 """

@@ -114,9 +114,9 @@ def _swapped(seen: View) -> list[Finding]:
 
 
 def _tried(seen: View, finding: Finding) -> Finding:
-    """The finding with the value, of those proposed, after which least is left to find.
+    """The finding with the one proposed value that leaves the fewest findings.
 
-    Without a value if none removes the finding.
+    It gets no value if no proposed value removes the finding.
     """
     if finding.severity is not Severity.WRONG or finding.proposed is None:
         return finding

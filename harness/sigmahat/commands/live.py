@@ -60,7 +60,7 @@ def live(
     out: Path,
     start_from: Path | None,
 ) -> None:
-    """Estimate on line: messages of a robot in, estimates out, until Ctrl-C.
+    """Estimate on line: read messages of a robot and send estimates, until Ctrl-C.
 
     CONFIG is the configuration of a log of the robot, with the columns of the messages. Messages
     are recorded as a log, from which `sigmahat estimate` computes the same estimates.

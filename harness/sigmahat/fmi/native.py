@@ -31,7 +31,7 @@ _FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
 
 @lru_cache
 def library() -> ctypes.CDLL:
-    """The library of this installation. Raises FmuError if it is missing or of another version."""
+    """The library of this installation. Raises FmuError if none has the right version."""
     path = folder() / f"sigmahat_native{fmpy.sharedLibraryExtension}"
     try:
         found = ctypes.CDLL(str(path))

@@ -3,7 +3,7 @@
     joints = guess(read_columns(open_log(path)))
     joints["knee"].ports["theta"].column
 
-A guess is data: `template.py` writes it as a configuration.
+A guess is data: `template.py` writes this guess as a configuration.
 """
 
 import re

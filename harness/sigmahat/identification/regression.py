@@ -10,12 +10,12 @@ spring at a wrong zero of the deformation.
 
 Least squares would be biased: theta'' of a rounded position is mostly noise, and noise in a
 regressor makes its coefficient too small. Therefore even and odd samples are filtered and
-differentiated separately. Their rounding errors are independent while the joint moves, and the
-regressors of each half are the instruments of the other half: the sums Z'X contain no
-squared noise.
+differentiated separately. Their rounding errors are independent while the joint moves. The
+regressors of each half are the instruments of the other half, so the sums Z'X contain no squared
+noise.
 
-The equations are kept as sums over blocks of time, never row by row: so the memory does not go with
-the number of samples, and each fit takes no time beside the filters.
+The equations are kept as sums over blocks of time, never row by row. So the memory does not grow
+with the number of samples, and a fit takes much less time than the filters.
 """
 
 from __future__ import annotations
@@ -365,9 +365,9 @@ def _direction(velocity: Array, v_s: float) -> Array:
 
 
 def units(pieces: Sequence[Signals]) -> tuple[float, float]:
-    """What deformation and set-point are divided by in the polynomial [rad, 1].
+    """Divisors of deformation and set-point in the polynomial [rad, 1].
 
-    They are the largest magnitudes in all pieces: divided by them, values have powers of order 1.
+    The divisors are the largest magnitudes in all pieces, so that powers are of order 1.
     """
     phi = max(float(np.max(np.abs(piece.phi))) for piece in pieces)
     set_point = max(float(np.max(np.abs(piece.set_point))) for piece in pieces)
@@ -467,8 +467,8 @@ def left_out(e: Equations) -> Array:
 
 
 def choose(system: Equations, form: Form) -> tuple[Form, Array]:
-    """The form with the orders, up to its own, that have the least error on eighths of the log that
-    were left out, and these errors, see left_out; system has the equations of the form.
+    """The form with the orders, up to its own, that have the least error in a cross-validation over
+    eighths of the log, and these errors, see left_out; system has the equations of the form.
     """
     system = system.in_parts(_PARTS)
     others = [name for name in system.names if name not in eta(form.n, form.m)]

@@ -26,7 +26,7 @@ class Branch:
 
     set_point: float  #: [1]
     reach: Range
-    """Range of the measured deformation at this set-point [rad]; outside, the curve is a guess."""
+    """Range of the measured deformation at this set-point [rad]; outside, it is extrapolated."""
     phi: Array  #: Deformation [rad], from below this range to above this range.
     tau_e: Array  #: Flexibility torque [N.m]
     tau_e_std: Array | None
@@ -51,7 +51,7 @@ class Branch:
 
 @dataclass(frozen=True)
 class Curve:
-    """The torque and stiffness that an estimator has learned from a log."""
+    """Torque and stiffness that an estimator has found from a log."""
 
     polynomial: Polynomial  #: Polynomial of the torque.
     branches: Sequence[Branch]

@@ -1,7 +1,6 @@
 """The start values of a data sheet as a file for another tool: SSV, MATLAB, Modelica.
 
-Each number is written with all of its digits, so that the FMU gets what was learned, to the last
-bit.
+Each number has all digits, so that the FMU gets the estimate to the last bit.
 """
 
 import re

@@ -30,11 +30,11 @@ _NEEDED = {
 
 
 class Estimator:
-    """The estimator of StiffnessEstimator.fmu, without an FMU between, for one joint or many.
+    """The estimator of StiffnessEstimator.fmu, without the FMU, for one joint or many.
 
     The results equal the results of the FMU, to the last bit. Messages of the FMU are missing, but
     the outputs valid and doubt report the same. `run` logs a warning if range.phi does not fit.
-    The learned curve stays from call to call, until reset(). A copy, by `copy.copy`, is
+    The estimated curve stays from call to call, until reset(). A copy, by `copy.copy`, is
     independent. Other threads of Python run during a call. An object may be used by one thread at a
     time, and cannot be pickled. Memory: 133 kB a joint.
 
@@ -52,8 +52,8 @@ class Estimator:
     ) -> None:
         """Starts the estimator.
 
-        The parameters have their names in the FMU, enumerations take an item name; parameters that
-        are not given have the start values of the FMU. A sequence has a mapping for each joint. A
+        The parameters have their names in the FMU, and enumerations take an item name. Missing
+        parameters have the start values of the FMU. A sequence has a mapping for each joint. A
         single mapping is for all joints, and the first samples give the number of joints. `record`
         names the outputs that run() and tick() return.
 
@@ -183,7 +183,7 @@ class Estimator:
         return self._joints.stride
 
     def tune(self, parameters: Mapping[str, Value]) -> None:
-        """Changes tunable parameters of all joints; what was learned stays.
+        """Changes tunable parameters of all joints; the estimate stays.
 
         Raises ValueError, and changes nothing, for a name or value that does not fit, and for a
         parameter that is fixed.
@@ -203,7 +203,7 @@ class Estimator:
         self._tick = None
 
     def reset(self) -> None:
-        """Forgets all that was learned; parameters stay as they are."""
+        """Deletes the estimate; parameters do not change."""
         self._joints.start()
 
     def __copy__(self) -> Estimator:

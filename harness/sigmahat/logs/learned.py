@@ -1,4 +1,4 @@
-"""`state.json`: what the estimator has learned from a log, to continue with the next log.
+"""`state.json`: the state of the estimator after a log, to continue with the next log.
 
 The JSON file has the identity of the FMU, the logs, and the state of the FMU from
 fmi2SerializeFMUstate, in base64. The state contains the parameters of the estimator.
@@ -54,7 +54,7 @@ LEARNED = Format("state.json", "sigmahat learned state", 1, _File)  # format of 
 def write_learned(
     slave: Slave, every: Mapping[str, Value], logs: Sequence[LearnedLog], path: Path
 ) -> None:
-    """Writes what a slave has learned from logs; `every` has the parameters of the slave."""
+    """Writes the state of a slave after its logs; `every` has the parameters of the slave."""
     contents = _File(
         format=LEARNED.name,
         version=LEARNED.version,

@@ -2,7 +2,7 @@
 
 A CSV log gives `estimate.csv`, every other log `estimate.parquet`: the log with the estimates. The
 titles of the estimates are "estimate.sigma [N.m/rad]" and so on; "estimate.t [s]" is the time of
-the tick since the start of the log. `estimate.json` has what no other file of the folder has.
+the tick since the start of the log. `estimate.json` has data that no other file of the folder has.
 
 In Parquet the estimates are float32, rounded to five digits: three or four digits are accurate. The
 columns of the log are unchanged. Times are float64, because times of hours need more digits.
@@ -109,8 +109,8 @@ class EstimateWriter(AbstractContextManager["EstimateWriter"]):
 
 
 def _rounded(values: NDArray[np.float64]) -> NDArray[np.float32]:
-    """The nearest numbers with 16 bits behind the leading one: what follows is noise and would be a
-    third of the file.
+    """The nearest numbers with 16 bits after the leading bit. The other bits are noise, and would
+    be a third of the file.
     """
     bits = values.astype(np.float32).view(np.uint32)
     return ((bits + 0x40) & 0xFFFFFF80).view(np.float32)

@@ -1,13 +1,14 @@
-"""From the columns of a log to the inputs of the estimator at its ticks.
+"""Converts the columns of a log to inputs of the estimator at its ticks.
 
-Tick k is at t_0 + k T, t_0 being the first time in the log. What had to be done to the samples is
-noted, in sentences for people.
+Tick k is at t_0 + k T, t_0 being the first time in the log. Notes describe the processing of the
+samples, in sentences for people.
 
 A sample at a tick, within a thousandth of the period, is used without a change. A slower, faster or
 uneven column has samples elsewhere. Ticks between two such samples are interpolated linearly, if
 the samples are not further apart than the longest gap. The longest gap is configured, or three
-times the usual interval of the column. All other ticks get nan, and the estimator skips them. So a
-column with a sample for nearly every tick is only interpolated if a longest gap is configured.
+times the usual interval of the column. The values at all other ticks are nan, and the estimator
+skips these ticks. So a column with a sample for nearly every tick is only interpolated if a longest
+gap is configured.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -158,7 +159,7 @@ def _times(
 
 
 def _shown(times: Array, i: int) -> str:
-    """A time as it is, or from the first one on if the digits of that would hide it."""
+    """A time as text; relative to the first row if the times count from long ago."""
     if abs(times[0]) < _LONG_AGO:
         return f"{times[i]:.9g} s"
     return f"{times[i] - times[0]:.9g} s from the first row"
@@ -271,8 +272,8 @@ def _skipped(values: Array, T: float) -> Iterator[str]:
 
 
 def _put_right(values: Array, ports: Mapping[str, Port], T: float) -> Iterator[str]:
-    """Moves theta or q behind gaps by whole periods of its counter, so that it went as far as the
-    other one. Motor and link go together, but for the deformation.
+    """Moves theta or q after gaps by whole periods of its counter, so that both move equally far.
+    Motor and link go together, but for the deformation.
 
     values  of the ports at the ticks [size: ticks x ports], nan where there is none; it is changed
     T       time between ticks [s]
@@ -301,8 +302,8 @@ def _put_right(values: Array, ports: Mapping[str, Port], T: float) -> Iterator[s
 def _whole_turns(values: Array, configuration: Configuration) -> Iterator[str]:
     """Moves theta or q by whole periods of its counter, so that the deformation is in range.phi.
 
-    A counter that was switched on in another turn is that far off. Nothing moves without range.phi
-    in the configuration, nor where the deformation stays beyond it.
+    A counter that was switched on in another turn is wrong by such periods. Nothing moves without
+    range.phi in the configuration, nor where the deformation stays beyond it.
 
     values  as in _put_right, after it
     """

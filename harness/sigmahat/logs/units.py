@@ -30,7 +30,7 @@ def counts_per_turn(port: Port) -> float | None:
 
 
 def factor(name: str, port: Port) -> float:
-    """Value of the port, in its unit, per 1 in the column; without sign, zero and gear.
+    """Value of the port, in its unit, for 1 in the column; without sign, zero and gear.
 
     Raises LogError for a unit that is unknown or does not fit, and for a missing key that the unit
     needs.

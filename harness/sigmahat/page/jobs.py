@@ -42,7 +42,7 @@ def look(log: Log, name: str) -> Look:
 
 def guessed(log: Log) -> tuple[Mapping[str, str], Chosen]:
     """The configuration of each joint of a log as `init` writes it, and a function that guesses
-    units, signs and gear of columns that the user chooses.
+    units, signs and gear of chosen columns.
     """
     columns = read_columns(log)
     joints = guess(columns)

@@ -53,7 +53,7 @@ def reproduce(
     progress   called now and then with what was done since the last call: runs, but steps if there
                is a single seed
 
-    Raises what simulate() raises, and WorkerError if a process was ended from outside.
+    Raises what simulate() raises, and WorkerError if another program ended a process.
     """
     if len(seeds) == 1:
         recording = run(scenario, seeds[0], variants=True, progress=progress)

@@ -108,7 +108,7 @@ def models(scenario: Scenario) -> dict[str, Plant | EstimatorFmu]:
 
 
 def identity(run: Run) -> str:
-    """A text that differs between runs with different results; it does not have the number."""
+    """A text that differs between runs with different results; the run number has no effect."""
     fmus = _fmu_digest(run.scenario)
     every = [fmus, run.scenario, run.modalities, run.seed, run.parameters]
     return json.dumps(every, sort_keys=True)
@@ -124,7 +124,7 @@ def _fmu_digest(name: str) -> str:
 
 
 def execute(run: Run, known_as: str) -> Outcome:
-    """Does a run that has this identity. Raises WorkerError if the FMUs here are others."""
+    """Does a run that has this identity. Raises WorkerError if the FMUs here are different."""
     if identity(run) != known_as:
         raise WorkerError(
             "the FMUs of a worker differ from those here; install the same sigmahat on both"

@@ -24,7 +24,7 @@ _ROWS = 30  # rows of a printed summary; summary.csv has all rows
 
 Mean = tuple[dict[str, Any], dict[Index, tuple[float, float]]]
 """A scenario with listed values and a comparison, by title, with the numbers of runs and of failed
-runs; and for each index its mean and half width of its 95 % interval, over runs that did not fail.
+runs. For each index: mean and half width of the 95 % interval, over runs that did not fail.
 """
 
 

@@ -1,4 +1,4 @@
-"""Opens a log. Its format is found from the contents of the file, not from its name."""
+"""Opens a log. The format is found from the contents of the file, not from its name."""
 
 from pathlib import Path
 
