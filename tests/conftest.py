@@ -35,7 +35,7 @@ def c(build: Path) -> "Library":
 
 @pytest.fixture(scope="session")
 def fmi3(build: Path) -> Fmi:
-    """FMI 3.0: the twins of the FMUs, with the binary of this machine."""
+    """The FMUs for FMI 3.0, with the binary of this machine."""
     return Fmi(Instance3, lambda name: build / "fmi3" / f"{name}_FMI3.fmu")
 
 

@@ -2,11 +2,11 @@
  *
  *     0  the joint is as before: the prior and all blocks
  *     1  the spring has changed since t: the same at t, but of its columns, which are the first ones, only the
- *        prior is known. What the data say about motor and friction is in the rows behind.
+ *        prior is known. The rows behind contain what the data show about motor and friction.
  *     2  friction has changed: all blocks, but friction has changed by about the deviations of its priors
  *
- * Hypothesis 2 begins when there is evidence against hypothesis 0. It uses the blocks in which friction drifts. If
- * nothing has changed, these blocks become the blocks of hypothesis 0 again.
+ * Hypothesis 2 begins when there is evidence against hypothesis 0. Hypothesis 2 uses the blocks in which friction
+ * drifts. If nothing has changed, these blocks become the blocks of hypothesis 0 again.
  */
 #include "constants.h"
 #include "regression.h"
@@ -17,7 +17,7 @@ void sh_change_start(sh_regression_state *state)
 
     sh_information_start(&change->changed, state->columns.size, 1);
     change->level = change->usual_misfit = 1;
-    change->blocks = SH_LONGEST_TEST; /* it begins with the first block that can show a change */
+    change->blocks = SH_LONGEST_TEST; /* hypothesis 1 begins with the first block that can show a change */
     state->history.change_age = -1;
 }
 
@@ -96,8 +96,8 @@ int sh_change_begins_anew(sh_regression_state *state, sh_real error)
 }
 
 /* Blocks and data become the blocks of the hypothesis that is in blocks.drifting. The data of all samples contain
- * samples from behind t, which contradict what these data say about the motor. The next posterior follows. It has the
- * prior twice, as the blocks contain the prior; what the blocks say soon outweighs the prior.
+ * samples after t, which contradict the motor data of the other samples. The next posterior follows. The sum has the
+ * prior twice, because the blocks also contain the prior. The blocks soon outweigh the prior.
  */
 static void adopt(sh_regression_state *state, const sh_parameters *p)
 {
@@ -114,7 +114,7 @@ static void adopt(sh_regression_state *state, const sh_parameters *p)
     sh_refit_begin(state, p);
     change->following = 1;
     change->usual_misfit *=
-        SH_SUDDEN_MISFIT; /* what was learned of the motor may not fit as well */
+        SH_SUDDEN_MISFIT; /* the estimate of the motor data may not fit either */
     change->friction_blocks = 0;
     begin(state);
 }

@@ -1,4 +1,4 @@
-/* What the files of FilteredRegression give each other. "Point" and "detail" with a number are those of
+/* Interfaces between the files of FilteredRegression. Numbers of a "point" or "detail" refer to
  * docs/filtered-regression.md, which has the derivations.
  */
 #ifndef SH_REGRESSION_H
@@ -17,7 +17,7 @@ enum {
     SH_NEW_VARIANCES = 2 /* to be computed at the point of this tick */
 };
 
-/* Where the joint is, and the signals of the columns there, before the filter. */
+/* Positions of the joint, and the signals of the columns there, before the filter. */
 typedef struct {
     sh_real theta, q, phi;      /* positions and deformation [rad] */
     sh_real x;                  /* phi / range.phi [1] */
@@ -107,7 +107,7 @@ int sh_columns_count(const sh_parameters *p);
 /* The columns for these parameters; there must not be more than SH_MAX_COLUMNS. */
 void sh_columns_start(sh_columns *columns, const sh_parameters *p);
 
-/* Where the first column of a kind is; -1 if there is none. */
+/* Place of the first column of a kind; -1 if there is none. */
 int sh_columns_place(const sh_columns *columns, int kind);
 
 /* Whether column i can be told from the spring after the deformations so far. */
@@ -161,7 +161,7 @@ void sh_signals_start(sh_signals *signals, sh_history *history, const sh_paramet
 /* Lets the estimate wait until the filters have settled. */
 void sh_signals_unsettle(sh_signals *signals, sh_history *history);
 
-/* Takes a sample into the history and into all filters. Sets where the joint is, also behind the filters. */
+/* Takes a sample into the history and into all filters. Sets the positions of the joint, also after the filters. */
 void sh_signals_take(sh_regression_state *state, const sh_parameters *p, const sh_measurement *z,
                      sh_real set_point, sh_joint_point *at);
 
@@ -187,8 +187,8 @@ int sh_noise_contradicts_rest(sh_regression_state *state, const sh_parameters *p
 
 void sh_posterior_copy(sh_posterior *to, const sh_posterior *from);
 
-/* Takes a row x: all columns [size: size], then the right-hand sides. Its weight is w times the weight of the
- * posterior. Returns 1 / (1 + rho), where rho is the variance of the prediction over the variance of the row.
+/* Takes a row x: all columns [size: size], then the right-hand sides. The weight of the row is w times the weight of
+ * the posterior. Returns 1 / (1 + rho), where rho is the variance of the prediction over the variance of the row.
  */
 sh_real sh_posterior_take(sh_posterior *posterior, const sh_real *x, int size, sh_real w);
 
@@ -258,8 +258,8 @@ int sh_change_begins_anew(sh_regression_state *state, sh_real error);
 void sh_change_judge(sh_regression_state *state, const sh_parameters *p, sh_real before,
                      sh_real spring, sh_real friction);
 
-/* Step 0..2 behind a row in which no block is taken. Lets friction be another one, if this hypothesis has just begun.
- * Returns 0 if there is nothing to do.
+/* Step 0..2 behind a row in which no block is taken. Gives friction the variance of its prior, if this hypothesis has
+ * just begun. Returns 0 if there is nothing to do.
  */
 int sh_change_widens_friction(sh_regression_state *state, int step);
 
@@ -280,7 +280,7 @@ void sh_refit_begin(sh_regression_state *state, const sh_parameters *p);
 /* Takes the newest row into the data of all samples. */
 void sh_data_take(sh_regression_state *state);
 
-/* Takes what sh_data_take left of the newest row, if a refit is running. No row may be read in between. */
+/* Takes the rest of the newest row after sh_data_take, if a refit is running. No row may be read in between. */
 void sh_refit_take(sh_regression_state *state);
 
 /* Takes a row of the data of all samples, two where they are short, or does the next step at the end of a refit.

@@ -1,7 +1,7 @@
-/* What an estimator stores from one tick to the next: the struct of each block of c/.
+/* The state of an estimator from one tick to the next: a struct for each block of c/.
  *
  * Nothing here is for users, who include sigmahat.h: with every version these structs may change.
- * They are in a header that is installed because the caller provides the memory. Members named
+ * This header is installed, because the caller provides the memory for the structs. Members named
  * `work` have no meaning between two calls.
  */
 #ifndef SIGMAHAT_STATE_H
@@ -69,7 +69,7 @@ typedef struct {
 
 /* Method FilteredRegression, in the folder of this name. */
 
-/* What all filters of one corner frequency and sample period share. */
+/* Common data of all filters with one corner frequency and sample period. */
 typedef struct {
     sh_real w;       /* corner frequency [rad/s] */
     sh_real T;       /* sample period [s] */
@@ -181,7 +181,7 @@ typedef struct {
     sh_real theta_before[5]; /* the last positions, for differences [rad] */
 } sh_signals;
 
-/* What a gap in the samples does not end. A refused sample leaves it as it was. */
+/* Data that a gap in the samples does not reset. A refused sample does not change these data. */
 typedef struct {
     sh_real stop[SH_WIDTHS];       /* states of the stop operators of hysteresis [rad] */
     sh_real phi, phi_min, phi_max; /* deformation: last, least and largest [rad] */

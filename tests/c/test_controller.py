@@ -155,7 +155,7 @@ def test_the_library_needs_only_memory_and_math_functions(real: str, folder: Pat
 
 
 def test_the_commands_of_the_page_work(build: Path, tmp_path: Path) -> None:
-    """Runs those of docs/controller.md in a new folder, with the build tool of the environment."""
+    """Runs commands of docs/controller.md in a new folder, with our build tool."""
     for tool in TARGETS["Cortex-M4F"].tools:
         need(tool)
     for name in ("c", "cmake", "examples", "pyproject.toml"):

@@ -14,7 +14,7 @@ each_size = pytest.mark.parametrize("size", SIZES)
 
 
 class Information:
-    """The C struct, and the same as a dense matrix."""
+    """The C struct, and the same information as a dense matrix."""
 
     def __init__(self, c: Library, size: int, precision: float = 1.0) -> None:
         self.c, self.size = c, size
@@ -112,8 +112,8 @@ def test_fading_keeps_the_least_precision(c: Library) -> None:
 
 @pytest.mark.parametrize("distance", [1e-3, 1e-6, 1e-9, 1e-12, 0.0])
 def test_columns_that_are_almost_equal(c: Library, distance: float) -> None:
-    """GIVEN a column that two others almost make up, THEN predictions are as good as with exact
-    arithmetic, and with priors so are the parameters: no pivot consists of rounding errors."""
+    """GIVEN a column that is almost a sum of two others, THEN predictions, and with priors the
+    parameters, are as good as in exact arithmetic: no pivot is a rounding error."""
     rng = np.random.default_rng(5)
     rows = rng.normal(size=(30, 4))
     rows[:, 3] = rows[:, 0] + rows[:, 1] + distance * rng.normal(size=30)

@@ -188,7 +188,7 @@ def test_the_estimator_starts_with_the_first_good_sample(c: Library) -> None:
 @pytest.mark.parametrize("modality", MODALITIES)
 @pytest.mark.parametrize("gap", [1, 10, 1000])
 def test_the_estimate_stays_accurate_after_a_gap(c: Library, gap: int, modality: int) -> None:
-    """For ten time constants of the residual. Without a gap it is within 1.5 % there."""
+    """For ten time constants of the residual; without a gap, the error is below 1.5 % there."""
     recording = table1_recording()
     z = recording.measurements()
     z[2000 : 2000 + gap, 0] = math.nan

@@ -48,7 +48,7 @@ PROPOSED = {
     "torque 10 ms late": pytest.approx(0.010, abs=0.0005),
     "torque geared twice": 1.0,
 }
-"""The right value, of those that a log shows."""
+"""The right value among the values that a log shows."""
 
 
 @pytest.mark.parametrize("name", WRONG)
@@ -68,7 +68,7 @@ def test_a_wrong_key_is_named_first_with_the_right_value(name: str) -> None:
 
 
 EVEN_POWERS = RIGHT.replace("rls.n = 1", "rls.symmetric = false\nrls.n = 6")
-"""As after identify, which chooses a polynomial with even powers for most joints."""
+"""Configuration as after identify, which chooses a polynomial with even powers for most joints."""
 
 
 @pytest.mark.parametrize(
@@ -91,7 +91,7 @@ def test_a_wrong_gear_ratio_is_named(gear: float, gamma: bool, right: str) -> No
 @pytest.mark.parametrize("hold", [0.0, 0.05])
 @pytest.mark.parametrize("gear", [10.0, 1000.0, 0.01, -100.0])
 def test_a_wrong_gear_ratio_is_named_if_a_hand_moves_the_link(gear: float, hold: float) -> None:
-    """Then the torque is none, or that of a controller: it looks like the torque of a spring."""
+    """Then the torque is 0, or comes from a controller and looks like the torque of a spring."""
     right = EVEN_POWERS.replace("range.phi = 0.03", "range.phi = 0.05")
     log = log_by_hand(hold)
     assert wrong(log, right) == []

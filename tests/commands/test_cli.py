@@ -1,4 +1,4 @@
-"""The command line, as a user meets it."""
+"""The command line from the view of a user."""
 
 import csv
 import os
@@ -65,7 +65,7 @@ def test_json_of_reproduce_is_its_table(shell: Shell) -> None:
 
 
 def test_bash_completes(tmp_path: Path) -> None:
-    """With the line that the page says belongs into .bashrc."""
+    """Uses the line that the documentation gives for .bashrc."""
     bash = need("bash")
     page = (Path(__file__).parents[2] / "docs" / "start.md").read_text(encoding="utf-8")
     (line,) = re.findall(r"`(eval [^`]*bash_source[^`]*)`", page)

@@ -68,11 +68,11 @@ def test_better_than_the_paper_in_every_row_with_wrong_motor_data(runs: list[lis
 
 
 def test_finds_the_error_of_the_friction(runs: list[list[Row]]) -> None:
-    """From 0.3 Hz on within 10 % of the error, on the AwAS. No accuracy is required at 0.3 Hz with
-    unknown B: there, inertia looks like friction that grows with the torque of the motor. At
-    20 Hz, where the motor reverses every 25 ms, friction and a delay of its reversals look nearly
-    alike: within 25 %. So with Coulomb friction at 0.3 Hz, where 20 seeds have a standard
-    deviation of 12 %."""
+    """From 0.3 Hz on, the error of the friction is found to 10 %, on the AwAS. No accuracy is
+    required at 0.3 Hz with unknown B: there, inertia looks like friction that grows with the torque
+    of the motor. At 20 Hz, where the motor reverses every 25 ms, friction and a delay of its
+    reversals look nearly alike: within 25 %. So with Coulomb friction at 0.3 Hz, where 20 seeds
+    have a standard deviation of 12 %."""
     for row in (row for run in runs for row in run):
         motion = labels.motion(row.joint)
         if motion not in FREQUENCIES[1:]:

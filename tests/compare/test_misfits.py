@@ -164,7 +164,7 @@ def test_what_confident_means() -> None:
     assert together.figures["coverage"] >= 90
 
 
-# What the command prints, writes and draws
+# Output, files and figure of the command
 
 NAMES = ("none", "uneven Coulomb friction 20 %", "n = 1, too small")
 

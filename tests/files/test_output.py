@@ -61,7 +61,7 @@ def test_a_device_is_written_to(tmp_path: Path) -> None:
 
 
 def test_the_digest_of_a_folder(tmp_path: Path) -> None:
-    """That of the list of sha256sum. Any change of a file, or of its name, changes it."""
+    """Hash of the list of sha256sum. Any change of a file, or of its name, changes it."""
     bag = tmp_path / "bag"
     (bag / "more").mkdir(parents=True)
     (bag / "metadata.yaml").write_bytes(bytes(range(256)) * 10_000)  # more than is read at a time

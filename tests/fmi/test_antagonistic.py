@@ -32,7 +32,7 @@ def step(instances: list[Instance], k: int, bad: dict[str, float] | None = None)
 
 
 def doubt_of_sum(pair: Instance, one: Instance, two: Instance) -> float:
-    """The worse reason of the sides; that a side alone moves too little is none."""
+    """The worse reason of the sides; too little motion of one side alone is no reason."""
     worst = max(one.get("doubt"), two.get("doubt"))
     if worst not in (CONFIDENT, NOT_EXCITED):
         return worst

@@ -1,4 +1,4 @@
-"""What names say, and what values say where names are silent."""
+"""Guesses from names and, if the names give no hint, from values."""
 
 from pathlib import Path
 

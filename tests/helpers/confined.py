@@ -1,7 +1,7 @@
 """Commands of sigmahat with files from strangers: each in a process of its own, with limits.
 
 One process imports the package and is forked for every command, so that one takes some hundredths
-of a second. Each imports this file, too, so it stands alone.
+of a second. Each process also imports this file, so the file imports no other helper.
 """
 
 import json

@@ -51,7 +51,7 @@ class _Instance:
             modelIdentifier=self.description.coSimulation.modelIdentifier,
             instanceName="test",
         )
-        # Without FMPy's declarations, so that arguments of any kind can be passed.
+        # The library has no declarations of FMPy, so arguments of any kind can be passed.
         self.dll: Any = ctypes.CDLL(self._loaded.dll._name)
         self.component: int | None = None
 
@@ -106,7 +106,7 @@ class _Instance:
     def enter(
         self, start: float = 0.0, stop: float | None = None, tolerance: float | None = None
     ) -> int:
-        """Tells the experiment and enters initialisation mode."""
+        """Sets up the experiment and enters initialisation mode."""
         return self.begin(
             *(int(tolerance is not None), REAL(tolerance or 0.0), REAL(start)),
             *(int(stop is not None), REAL(stop or 0.0)),
@@ -301,7 +301,7 @@ class Instance3(_Instance):
         return self.call("EnterInitializationMode", *experiment)
 
     def step(self, t: float, h: float) -> int:
-        """Makes a step, of which nothing may be asked and which may not end early."""
+        """Makes a step, which must neither ask for anything nor end early."""
         flags, reached = [ctypes.c_bool(True) for _ in range(3)], REAL(math.nan)
         places = [*map(ctypes.byref, flags), ctypes.byref(reached)]
         status = self.call("DoStep", REAL(t), REAL(h), True, *places)

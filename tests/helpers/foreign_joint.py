@@ -29,7 +29,7 @@ _MOTION = ((0.45, 0.4), (0.16, 1.3), (0.05, 3.1))  # amplitude [rad], frequency 
 
 @dataclass(frozen=True)
 class Motion:
-    """What happened; all [size: samples], T apart."""
+    """The true signals; all [size: samples], T apart."""
 
     t: Array  # [s]
     theta: Array  # motor behind its gear [rad]

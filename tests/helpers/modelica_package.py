@@ -19,7 +19,7 @@ for _name, _text in contents(
     (PACKAGE / _name).write_bytes(_text)
 FILES = sorted(PACKAGE.rglob("*.mo"))
 NO_NOISE = "redeclare function drawNoise = Sigmahat.Plants.noNoise"
-"""For rumoca, which calls no C."""
+"""Replacements for rumoca, which calls no C."""
 
 
 def modification(**values: Any) -> str:

@@ -46,7 +46,7 @@ def at_rest(z: Array) -> Array:
 
 @dataclass(frozen=True)
 class Joint:
-    """A joint with a lever arm as that of the AwAS, and what the model does not have.
+    """A joint with the lever arm of the AwAS, and effects that the model does not have.
 
     The motor data are the defaults of the estimator.
     """

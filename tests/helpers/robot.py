@@ -33,7 +33,7 @@ AXES = {
 SIGMA, STD = "estimate.sigma [N.m/rad]", "estimate.sigma_std [N.m/rad]"
 
 DELAY = 0.0031
-"""Of the link's encoder behind the motor's [s], as `check` proposes it for axis 3 in both runs."""
+"""Delay of the link's encoder [s], as `check` proposes it for axis 3 in both runs."""
 
 CONFIGURATION = """\
 [time]
@@ -74,7 +74,7 @@ class Estimated:
 class Axis:
     number: int
     estimated: Sequence[Estimated]
-    """From run a, from run b, and from b after a."""
+    """Results from run a, from run b, and from b after a."""
     validated: Sequence[dict[str, Any]]
     """Output of `sigmahat validate --json` for run b with a, and for a with b."""
 

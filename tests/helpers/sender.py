@@ -50,7 +50,7 @@ prior.tau_e = 30
 
 
 def messages(samples: int, seed: int = 1) -> list[dict[str, float | int]]:
-    """Of a joint with 400 N.m/rad that moves a load, at T."""
+    """Samples of a joint with 400 N.m/rad that moves a load, T apart."""
     noise = np.random.default_rng(seed)
     t = T * np.arange(samples)
     theta = 0.8 * np.sin(3 * t) + 0.2 * np.sin(11 * t)

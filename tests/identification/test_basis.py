@@ -35,7 +35,7 @@ def log_of(stiffer: float, seed: int) -> LogInMemory:
 def within(log: LogInMemory, path: Path, stiffer: float) -> tuple[Array, Array]:
     """Error and standard deviation of the stiffness, over the true one, within the data.
 
-    With a configuration that `identify` has completed.
+    Uses a configuration that `identify` has completed.
     """
     write(identify(log, read_configuration(path)), path)
     (branch,) = estimate(log, read_configuration(path)).curve.branches

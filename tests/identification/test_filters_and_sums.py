@@ -1,4 +1,4 @@
-"""What identify computes without rows of equations, and without scipy.signal, against both."""
+"""Computations of identify without rows of equations and scipy.signal, compared with both."""
 
 from dataclasses import replace
 

@@ -43,7 +43,7 @@ AMPLITUDES = {0.1: 0.3, 0.3: 0.3, 1.0: 0.3, 3.0: 0.3, 8.0: 0.5}  # [Hz]: [N.m]
 
 @pytest.fixture(scope="module")
 def found() -> Found:
-    """By frequency, from start values that are wrong by 20 %."""
+    """Results by frequency, from start values that are wrong by 20 %."""
     return {f: identified(awas_log(f, A)) for f, A in AMPLITUDES.items()}
 
 
@@ -119,7 +119,7 @@ def test_command_writes_what_is_determined_and_keeps_the_comments(shell: Shell) 
     assert document["parameters"]["prior"]["B"] == 1.0  # the start value 0 would be exact
     for comment in ("# a comment of mine", "# on the axis of the motor", "# 20 % less than it is"):
         assert comment in text
-    # THEN the file is one that estimate reads
+    # THEN estimate reads the file
     shell.run("estimate log.csv")
 
 
@@ -307,7 +307,7 @@ def test_one_sine_of_a_free_load_does_not_tell_its_inertia_from_the_motors(
 @pytest.mark.parametrize("factor", [1.0, 2.0])
 def test_a_stiffness_that_changes_in_the_log_does_not_look_like_inertia(factor: float) -> None:
     def stiffness(t: Array) -> Array:
-        """Constant in spite of the lever arm of the joint, and then changed."""
+        """A stiffness that is constant despite the lever arm, and then changes."""
         steady: Array = (0.07 / (0.07 + 0.02 * np.sin(0.9 * t))) ** 2
         return steady * np.where(t < 12.0, 1.0, factor)
 

@@ -18,7 +18,7 @@ LARGEST, ZERO = 0.03, 0.004  # of the deformation [rad], of its zero
 
 Spring = Callable[[Array], Array]
 FOUND = 0.03 * LARGEST
-"""How near a place has to be [rad]."""
+"""Tolerance of a place [rad]."""
 
 
 def knee(*places: float, ratio: float = 2.0) -> Spring:

@@ -1,4 +1,4 @@
-"""The answer as a curve: it holds the truth as often as it says, and only where the data reach."""
+"""The result as a curve: the coverage of its bands, and the range of the data."""
 
 import csv
 import json
@@ -167,7 +167,7 @@ def test_the_words_say_the_same(awas: Awas) -> None:
 
 
 def test_a_fixed_spring_with_an_offset_has_one_curve(tmp_path: Path) -> None:
-    """A general polynomial: no motor torque tells its constant from a bias, as the band says."""
+    """A general polynomial: no motor torque distinguishes its constant from a bias."""
     general = CLOSED_FORM.replace("rls.m = 2", "rls.m = 1\nrls.symmetric = false")
     general = general.replace("rls.n = 2", "rls.n = 3")
     result = estimated(good_log(MisfitJoint()), general, tmp_path)

@@ -1,4 +1,4 @@
-"""The data sheet of a joint, what is made of it for other tools, and the way back into the FMU."""
+"""The data sheet of a joint, its exports to other tools, and its start values in the FMU."""
 
 import ast
 import json
@@ -119,7 +119,7 @@ def test_the_polynomial_is_the_curve(case: Path) -> None:
 
 
 def test_intervals_of_the_parameters(tmp_path: Path) -> None:
-    """Of `identify` where it wrote one, else of the prior; none where a value is exact. Each
+    """Interval of `identify` if it wrote one, else of the prior; none if a value is exact. Each
     contains its value."""
     identified = (
         '[identified]\nB = {value = 2.3e-5, half_width = 1e-6, unit = "kg.m2"}\n'
@@ -199,7 +199,7 @@ def from_matlab(path: Path) -> Values:
 
 
 def from_modelica(path: Path) -> Values:
-    """Of a Modelica record, as a compiler reads it; but it does not say what a matrix holds."""
+    """Values of a Modelica record, as a compiler reads them, but without matrices."""
     text = path.read_text()
     model = rumoca.Session().loads(f"{text}model M {path.stem} own; end M;", model="M")
     values = {name: model.parameters[name] for name in model.parameters.names}

@@ -20,7 +20,7 @@ SETTING = 'method = "FilteredRegression"\nprior.B = 0.2\nprior.tau_coulomb = 0.0
 
 @pytest.fixture(scope="module")
 def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Of an AwAS whose spring is a general polynomial, so that all of it has to be shown."""
+    """Sheet of an AwAS whose spring is a general polynomial, so that every power is tested."""
     configuration = CONFIGURATION + SETTING + "rls.n = 4\nrls.symmetric = false\n"
     folder = tmp_path_factory.mktemp("knee")
     out = estimated(folder, awas_log(1.0, 0.3, 10.0), configuration, "--out .")

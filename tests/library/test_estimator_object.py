@@ -90,7 +90,7 @@ def test_many_joints_are_as_many_estimators(z: Samples) -> None:
     assert together.eta.shape == (len(SETTINGS), 6, 3)
     for name, values in together.evaluate([0.0, 0.01]).items():
         np.testing.assert_array_equal(values, [e.evaluate([0.0, 0.01])[name] for e in single])
-    # One mapping: the samples say how many joints there are.
+    # With one mapping, the samples determine the number of joints.
     alike = sigmahat.Estimator(SETTINGS[0])
     np.testing.assert_array_equal(alike.run(**several)["sigma"], [alone[0]] * len(SETTINGS))
     tick = alike.tick(**{name: each[:, 0] for name, each in several.items()})
@@ -208,8 +208,8 @@ except KeyboardInterrupt:
 
 
 def test_the_estimate_is_evaluated_at_any_deformation(z: Samples) -> None:
-    """At the point of the last tick it gives the outputs, and nothing is learned. With one sample
-    in a row, the standard deviations are those of this tick, too."""
+    """At the point of the last tick, `evaluate` gives the outputs, and changes nothing. If a row
+    has one sample, the standard deviations also belong to this tick."""
     estimator = sigmahat.Estimator(
         {"method": "FilteredRegression", "rls.n": 3, "regression.decimation": 1}
     )

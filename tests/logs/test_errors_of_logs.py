@@ -46,7 +46,7 @@ def test_file_of_another_kind(content: bytes, words: str, shell: Shell) -> None:
 def test_missing_file_and_folder(shell: Shell) -> None:
     Path("log").mkdir()
     assert "ROS 2 bag" in shell.refused("estimate log")
-    for command in ("estimate", "identify"):  # the log is what a mistyped name is about
+    for command in ("estimate", "identify"):  # a mistyped name concerns the log
         assert "error: nothere.csv: No such file" in shell.refused(f"{command} nothere.csv")
     write_log(plain_log(), Path("other.csv"))
     assert "sigmahat init" in shell.refused("estimate other.csv")
@@ -68,7 +68,7 @@ NOT_INCREASING = "does not increase: 1.4 s in row 1501 after 1.499 s"
         ("q", np.array(["1.0", *["fast"] * 1999]), "column 'q' holds text ('fast' in row 2)"),
         ("q", np.full(2000, np.nan), "no number"),
         ("t", BACK, NOT_INCREASING),
-        ("t", BACK_SINCE_1970, NOT_INCREASING),  # times are told from the first row
+        ("t", BACK_SINCE_1970, NOT_INCREASING),  # times are relative to the first row
     ],
 )
 def test_values_that_do_not_fit(column: str, values: np.ndarray, words: str, shell: Shell) -> None:

@@ -136,7 +136,7 @@ def test_why_and_how_often_the_estimate_is_not_confident(shell: Shell) -> None:
     assert result["confident"] == np.mean(confident[half:])
     items = {*doubt[half:]} - {"None"}
     assert result["doubt"] == {item: np.mean(doubt[half:] == item) for item in items}
-    # THEN what it rests on is that of the FMU, and the summary says it
+    # THEN its assumptions are those of the FMU, and the summary lists them
     for name in ("misfit", "sigma_per_gain"):
         stored = table[f"estimate.{name} [1]"].to_numpy()[-1]
         assert result[name] == pytest.approx(stored, rel=STORED, abs=0)

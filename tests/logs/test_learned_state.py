@@ -1,4 +1,4 @@
-"""`sigmahat estimate --start-from` goes on from what was learned, and refuses what does not fit."""
+"""`sigmahat estimate --start-from` continues an estimate, and refuses a state that does not fit."""
 
 import base64
 import json
@@ -69,8 +69,8 @@ def learned(original: Path, shell: Shell) -> Shell:
     ids=["FilteredRegression", "Paper2011", "Sensor"],
 )
 def test_two_logs_are_one_log_with_a_gap(configuration: str, ticks: int, log: Columns) -> None:
-    """To the last bit, also if the ports of the second log differ. Paper2011 needs a gap of
-    2 / K_I = 6.7 ms, so that it starts again."""
+    """The results are equal to the last bit, also if the ports of the second log differ. Paper2011
+    needs a gap of 2 / K_I = 6.7 ms, so that it starts again."""
     write_halves(log, configuration)
     lost = np.full(ticks, np.nan)
     columns = {n: np.concatenate([v[:HALF], lost, v[HALF:]]) for n, v in log.items()}

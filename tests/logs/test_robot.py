@@ -1,6 +1,6 @@
 """Three axes of an industrial robot, as a user would treat their logs. See docs/robot.md.
 
-The requirements are those of the issue that asked for it; intervals are of 95 %.
+The requirements are from the issue for this test; intervals have 95 %.
 """
 
 from collections.abc import Callable

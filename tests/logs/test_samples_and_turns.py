@@ -92,7 +92,7 @@ def test_filters_are_not_faster_than_the_samples(period: float, rate: float | No
 
 
 def test_a_slow_log_and_one_with_a_pause(monkeypatch: pytest.MonkeyPatch) -> None:
-    """They may have 20 ticks for a row, if they are many."""
+    """If a log has many rows, it may have 20 ticks for a row."""
     monkeypatch.setattr("sigmahat.logs.sampling._MOST_TICKS", 500_000)
     rows = 51_000
     columns = dict.fromkeys(("motor", "link", "torque"), np.arange(rows, dtype=np.float64))

@@ -1,4 +1,4 @@
-"""From a log of several joints to one report, as a user goes; the joints are simulated by scipy."""
+"""All steps of a user from a log of several joints to one report; scipy simulates the joints."""
 
 import json
 from pathlib import Path

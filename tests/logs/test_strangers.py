@@ -22,7 +22,7 @@ from sigmahat.logs.readers.formats import open_log
 from strange_files import TRIALS, Trial, complaint_of
 
 EXAMPLES = int(os.environ.get("SIGMAHAT_STRANGERS", "40"))
-"""More, and others each time, if somebody asks for so many."""
+"""A larger number draws more inputs, and different ones each time."""
 CONFIGURED = CONFIGURATION.replace("motor.B", "rls.n = 3\nmotor.B")
 
 

@@ -104,8 +104,8 @@ class Tool:
     ) -> dict[str, NDArray[Any]]:
         """Outputs of a tick for each of the samples, time and inputs.
 
-        Another object runs in between, with other inputs. With `before`, each tick is made twice,
-        first with these inputs.
+        Another object runs in between, with other inputs. If `before` is given, each tick is made
+        twice, first with these inputs.
         """
         objects = [ctypes.c_void_p(self.new(parameters)) for _ in range(2)]
         types: dict[str, Any] = {"double": ctypes.c_double, "int": ctypes.c_int}
@@ -144,7 +144,7 @@ def gcc(*arguments: str | Path) -> None:
 
 @pytest.fixture(scope="module")
 def tool(build: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Tool]:
-    """Of the package in the archive."""
+    """Paths of the package in the archive."""
     folder = tmp_path_factory.mktemp("package")
     with ZipFile(build / "release" / "sigmahat-modelica.zip") as archive:
         archive.extractall(folder)

@@ -37,7 +37,7 @@ SPECIAL = {
     "confident": "true",
     "valid": "theta < 10",
 }
-"""What the function gives for some outputs; every other one is its place in the list of them."""
+"""Values of some outputs; the value of every other output is its place in the list."""
 
 
 def outputs() -> list[str]:
@@ -192,7 +192,7 @@ def run(
     text = (
         f"model Test Sigmahat.Plants.{plant} p({changed}); equation {' '.join(equations)} end Test;"
     )
-    # Its explicit solver: the implicit one of rumoca 0.10.2 stops at jumps of a derivative.
+    # Uses the explicit solver: the implicit one of rumoca 0.10.2 stops at jumps of a derivative.
     config = rumoca.SimConfig(solver="rk-like", rtol=1e-11, atol=1e-13)
     result = compiled(text).simulate(t=(0.0, duration), dt=T, config=config)
     times = np.asarray(result.time)
@@ -210,7 +210,7 @@ OTHER_VALUES = {
     "spring.step_at": 0.3,
     "spring.step_for": 0.4,
 }
-"""Of parameters that have hardly any effect else."""
+"""Values for parameters that otherwise have hardly any effect."""
 
 
 def other_values(plant: str) -> dict[str, float]:

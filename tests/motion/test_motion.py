@@ -65,7 +65,7 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
     corners = Ranges.corners
 
     def most_friction(of: Ranges) -> Iterator[Joint]:
-        """Of all corners those that need the most torque."""
+        """The corners of the set that need the most torque."""
         most = (of.high.B, of.high.D_theta, of.high.tau_coulomb)
         return (each for each in corners(of) if (each.B, each.D_theta, each.tau_coulomb) == most)
 

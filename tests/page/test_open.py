@@ -16,7 +16,7 @@ from served_page import Hand, served
 
 
 def by_hand(text: str) -> str:
-    """What an editor makes of the file of `init`, in the words of its user."""
+    """Edits of the file of `init`, as a user makes them in an editor."""
     for key, value in (("counts_per_turn", "4096"), ("torque_constant", "0.05")):
         text = text.replace(f"{key} = 0 ", f"{key} = {value} ")
     text = text.replace("gear_ratio = 0 ", "gear_ratio = 100 ")

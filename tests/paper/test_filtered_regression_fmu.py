@@ -50,8 +50,8 @@ def test_motions_that_nothing_was_tuned_on(c: Library) -> None:
 def test_motor_that_turns_at_the_start(
     c: Library, period: float, velocity: float, friction: float
 ) -> None:
-    """In [rad/s]. That costs hardly more than to learn nothing for 12/w after the first row, at any
-    sample period."""
+    """In [rad/s]. The error is hardly larger than if no sample were used for 12/w after the first
+    row, at any sample period."""
     t = times(period, 1.0)
     torques = np.column_stack([0.3 * np.sin(2 * np.pi * t), 8 * np.sin(0.2 * np.pi * t), 0 * t])
     start = {"initial.theta_dot": velocity, "initial.q_dot": velocity}

@@ -1,4 +1,4 @@
-"""What the plants share: limits of the torques, sines that move their motors, noise of sensors."""
+"""Common parts of the plants: limits of torques, sines that move motors, noise of sensors."""
 
 import math
 from collections.abc import Iterator
@@ -155,13 +155,13 @@ def test_noise_does_not_depend_on_a_last_step_of_a_moment() -> None:
         assert t != 2.0
         assert fmu.step(t, 1e-13) == OK
         assert fmu.get("tau_measured") == before
-        # It has not moved the grid either.
+        # The step has not moved the grid either.
         assert fmu.step(t + 1e-13, 1e-3) == OK
         assert fmu.get("tau_measured") == normals(1)[2001, 0]
 
 
 def test_a_scenario_draws_noise_at_its_own_sampling_times() -> None:
-    """So that it is white for its estimators, whatever T is."""
+    """So the noise is white for the estimators, for every T."""
     table1 = scenario("table1")
     plant = replace(
         table1.plant, start={"noise.tau_variance": 1.0}, inputs={}, record=["tau_measured"]

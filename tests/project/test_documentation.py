@@ -74,7 +74,7 @@ def test_every_name_in_the_text_is_a_variable(files: dict[str, bytes]) -> None:
 
 
 def test_the_page_loads_nothing_from_outside_of_the_fmu(files: dict[str, bytes]) -> None:
-    """It can be opened offline: it refers only to files of the FMU, and to anchors that exist."""
+    """The manual can be opened offline: it refers only to files of the FMU and existing anchors."""
     for name in (INDEX, ICON):
         content = files[name].decode()
         root = etree.fromstring(files[name])

@@ -96,7 +96,7 @@ def page() -> dict[str, Any]:
 def test_the_program_of_the_page_on_fmus_works_with_both_versions_of_fmi(
     build: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """As it is, and with the line that the page on FMI 3.0 shows."""
+    """The program as it is, and with the line from the page on FMI 3.0."""
     (tmp_path / "build").symlink_to(build.resolve())
     monkeypatch.chdir(tmp_path)
     (line,) = re.findall(r"`(fmu = .*?)`", (PAGES / "fmi3.md").read_text(encoding="utf-8"))
@@ -200,7 +200,7 @@ def test_the_system_as_it_is_gives_table_1(page: dict[str, Any]) -> None:
     recording = simulate(table1.plant, estimators, T, steps)
     plant, estimate = recording.plant["sigma"], recording.estimators["RESIDUAL"]["sigma"]
     np.testing.assert_allclose(page["system"]["plant.sigma"][:steps], plant[1:], rtol=1e-10)
-    # What is left after a second is the first tick, whose inputs FMPy sets to 0.
+    # The difference after a second comes from the first tick, whose inputs FMPy sets to 0.
     settled = slice(round(1.0 / T) + 1, steps)
     found = page["system"]["estimator.sigma"]
     np.testing.assert_allclose(found[settled], estimate[settled], rtol=1e-6)

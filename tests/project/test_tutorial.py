@@ -1,4 +1,4 @@
-"""The tutorial: its log can be made again, its commands work, and it tells what comes out."""
+"""The tutorial: its log can be made again, its commands work, and its results are right."""
 
 import re
 import runpy

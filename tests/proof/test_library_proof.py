@@ -91,7 +91,7 @@ def with_guards(folder: Path) -> Path:
 
 def assert_proven(analysis: Analysis, least_coverage: int) -> None:
     assert analysis.alarms == ()
-    # What is not reached is not proven either: an analysis that ends early finds nothing.
+    # Code that is not reached is not proven: an analysis that ends early finds nothing.
     assert analysis.coverage >= least_coverage and analysis.proven >= 1, analysis.text
 
 

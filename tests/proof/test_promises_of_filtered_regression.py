@@ -105,7 +105,7 @@ def test_the_noise_of_the_filter_is_finite_at_every_bandwidth(
     assert all(0 <= gain[0] < math.inf for gain in gains)
 
 
-# What overflowed, mostly in single precision
+# Cases that overflowed, mostly in single precision
 
 
 def test_a_stiff_joint_has_finite_coefficients(c: Library) -> None:

@@ -56,7 +56,7 @@ def test_fmpy_rebuilds_it_from_its_sources(name: str, released: Path, tmp_path: 
     contents = {f.relative_to(folder).as_posix(): f for f in files}
     rebuilt = tmp_path / f"{name}.fmu"
     archive.write(rebuilt, {n: f for n, f in contents.items() if not n.startswith("binaries/")})
-    # With the build tool of the environment, because make may be missing.
+    # Uses the build tool of the environment, because make may be missing.
     environment = {
         "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}",
         "CMAKE_GENERATOR": "Ninja",

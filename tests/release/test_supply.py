@@ -168,7 +168,7 @@ print(json.dumps([sigmahat.__file__, run.estimators["RESIDUAL"]["sigma"].tolist(
 """
     found = []
     packages = sysconfig.get_path("purelib")
-    # Without "site" the package of this tree is on no path.
+    # Without "site", Python does not find the package of this tree.
     for command in (["-S", "-c", program, tmp_path, packages], ["-c", program]):
         found.append(json.loads(run(sys.executable, *command)))
     assert Path(found[0][0]).is_relative_to(tmp_path)

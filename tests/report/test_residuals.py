@@ -10,7 +10,7 @@ ROWS = 40_000
 
 
 def found(more: float = 0.0, constant: float = 0.0) -> Residuals:
-    """Of a torque of 200 N.m/rad with white noise, and more phi^2 [N.m/rad2] that is not known."""
+    """Residuals of a spring of 200 N.m/rad with white noise, and an unknown part phi^2."""
     rng = np.random.default_rng(7)
     t = np.arange(ROWS, dtype=np.float64) * T
     phi = 0.05 * np.sin(2.1 * t) + 0.02 * np.sin(11.3 * t)

@@ -121,5 +121,5 @@ def test_relative_error_of_zero_stiffness_is_refused() -> None:
 
 
 def test_interval_of_equal_values_is_exactly_zero() -> None:
-    assert float(np.std([0.1] * 20)) > 0  # what rounding would make of it
+    assert float(np.std([0.1] * 20)) > 0  # result with rounding
     assert mean_interval([0.1] * 20) == (0.1, 0.0)

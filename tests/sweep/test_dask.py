@@ -49,7 +49,7 @@ def scheduler(folder: Path) -> Iterator[subprocess.Popen[bytes]]:
 
 @pytest.fixture(scope="module")
 def address(scheduler: subprocess.Popen[bytes], folder: Path) -> str:
-    """Of the scheduler, once it is there."""
+    """Address of the scheduler, as soon as it listens."""
     file = folder / "scheduler.json"
     wait_until(lambda: file.exists() and bool(file.read_text()), scheduler)
     address: str = json.loads(file.read_text())["address"]

@@ -104,7 +104,7 @@ def test_a_run_is_not_repeated_in_any_plan(tmp_path: Path, monkeypatch: pytest.M
         return Outcome({"a": Indices(*[10 * mass + run.seed] * len(INDICES))}, None)
 
     def outcomes(seeds: int, *masses: float) -> list[Outcome]:
-        """Of all runs of a plan; `done` has those that were done."""
+        """Numbers of all runs of a plan; `done` has the completed runs."""
         plan = Plan(("table1",), seeds, (), {"plant.link.M": masses})
         done.clear()
         with closing(Records(tmp_path / NAME)) as opened:

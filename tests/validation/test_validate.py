@@ -1,4 +1,4 @@
-"""`sigmahat validate`: whether a second log of a joint confirms what was learned from the first."""
+"""`sigmahat validate`: whether a second log of a joint confirms the estimate from the first."""
 
 import shutil
 from pathlib import Path
@@ -106,7 +106,7 @@ def test_wrong_arguments(arguments: str, words: str, knee: Shell) -> None:
     assert words in knee.refused(f"validate {arguments}")
 
 
-# ---- what it is made of -------------------------------------------------------------------------
+# ---- the parts of the result --------------------------------------------------------------------
 
 
 def estimates(sigma: float, std: float, per_gain: float = 1.0) -> dict[str, Array]:
@@ -126,7 +126,7 @@ def test_agreement_in_figures() -> None:
 
 
 def test_the_gain_of_the_torque_is_one_error_of_both() -> None:
-    """It widens both intervals, and explains no difference; but one where it acts differently."""
+    """The gain widens both intervals, and explains a difference only if it acts differently."""
     # GIVEN 10 % of gain, and 0.5 of their own
     before, alone = (estimates(x, float(np.hypot(0.5, 0.1 * x))) for x in (100.0, 105.0))
     found = agreement(before, alone, 0.1)
