@@ -25,7 +25,7 @@ K_S, R_0, LEAD = 14220.0, 0.1, 0.0025 / (2 * math.pi)  # data sheet [N/m, m, m/r
 MOTION = {"signal.tau.amplitude": 0.3, "signal.tau.frequency": 0.5}  # without it no estimate
 START = 2.0  # until then the lever arm rests and the estimate settles [s]
 GAIN = 20.0  # tau_c for an error of one in the square root of the stiffness
-LARGEST = 8.0  # of tau_c, as in the paper [N.m]: up to some 50 N.m/rad in a second
+LARGEST = 8.0  # largest tau_c, as in the paper [N.m]: 50 N.m/rad in a second
 
 
 def wanted(t: float) -> float:
@@ -47,7 +47,7 @@ def run(with_estimate: bool) -> NDArray[np.float64]:
     estimator = sigmahat.Estimator(
         {"method": "FilteredRegression", "rls.n": 3, "prior.torque_gain": 0.0}
     )
-    correction = 1.0  # of the data sheet, by the last estimate that was confident
+    correction = 1.0  # factor for the data sheet, from the last confident estimate
     rows = []
 
     def control(t: float, recorder: Any) -> bool:

@@ -31,7 +31,7 @@ typedef enum {
 /* One variable. The value reference of a variable is its index in the table. */
 typedef struct {
     const char *name;
-    size_t offset; /* in the model's struct, of a double (Real) or an int */
+    size_t offset; /* place of a double (Real) or an int in the model's struct */
     sh_type type;
     sh_role role;
     double start;
@@ -44,8 +44,8 @@ void sh_report(sh_instance *instance, sh_status status, const char *format, ...)
 
 typedef struct {
     const char *identifier; /* modelIdentifier */
-    const char *guid;       /* of FMI 2.0; the instantiation token of FMI 3.0 is the same */
-    size_t size;            /* of the model's struct */
+    const char *guid;       /* GUID of FMI 2.0, and instantiation token of FMI 3.0 */
+    size_t size;            /* size of the model's struct */
     const sh_variable *variables;
     size_t count;
     /* The time derivative of the input at offset o is at o + derivative_offset. */

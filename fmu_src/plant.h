@@ -17,10 +17,10 @@ typedef struct {
     double y[SH_PLANT_OUTPUTS];
     double x[SH_PLANT_STATES];
     double h;            /* internal step that is short enough for the motion [s] */
-    double samplePeriod; /* of the noise [s]; 0 for a plant without noise */
+    double samplePeriod; /* period of the noise [s]; 0 for a plant without noise */
     double since;        /* age of the noise sample in y, in periods */
     uint64_t sample;     /* number of the noise sample in y */
-    int seed;            /* of the noise */
+    int seed;            /* seed of the noise */
 } sh_plant;
 
 #endif

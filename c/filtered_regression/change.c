@@ -17,7 +17,7 @@ void sh_change_start(sh_regression_state *state)
 
     sh_information_start(&change->changed, state->columns.size, 1);
     change->level = change->usual_misfit = 1;
-    change->blocks = SH_LONGEST_TEST; /* hypothesis 1 begins with the first block that can show a change */
+    change->blocks = SH_LONGEST_TEST; /* begin with the first block that can show a change */
     state->history.change_age = -1;
 }
 

@@ -7,14 +7,14 @@
 #include "information.h"
 
 enum {
-    SH_ROW_STEPS = 7,   /* in which a row changes the estimate, and all that depends on it */
-    SH_REFIT_STEPS = 16 /* of a refit behind its rows, before it pauses */
+    SH_ROW_STEPS = 7,   /* number of steps in which a row changes the state */
+    SH_REFIT_STEPS = 16 /* number of steps of a refit after its rows */
 };
 
 /* What a step changes. The values may be added up. */
 enum {
     SH_NEW_COEFFICIENTS = 1,
-    SH_NEW_VARIANCES = 2 /* to be computed at the point of this tick */
+    SH_NEW_VARIANCES = 2 /* variances at the point of this tick */
 };
 
 /* Positions of the joint, and the signals of the columns there, before the filter. */
@@ -22,15 +22,15 @@ typedef struct {
     sh_real theta, q, phi;      /* positions and deformation [rad] */
     sh_real x;                  /* phi / range.phi [1] */
     sh_real power[SH_MAX_N];    /* x^e / e, e of number i [1] */
-    sh_real slope[SH_MAX_N];    /* and its derivative by phi [1/rad] */
+    sh_real slope[SH_MAX_N];    /* derivative of the power by phi [1/rad] */
     sh_real l[SH_MAX_M];        /* ((set-point - its center) / range.setPoint)^j [1] */
     sh_real phi_set;            /* phi l^j with the highest j [rad] */
     sh_real tau_nominal;        /* torque of the curve rls.eta_0 [N.m] */
-    sh_real sigma_nominal;      /* and its stiffness [N.m/rad] */
+    sh_real sigma_nominal;      /* stiffness of the curve rls.eta_0 [N.m/rad] */
     const sh_real *stop;        /* [size: SH_WIDTHS] stop operators of hysteresis [rad] */
     sh_real F[SH_MAX_COLUMNS];  /* signals of the first columns, as far as they have one */
-    sh_real dF[SH_MAX_COLUMNS]; /* and their slopes over phi, of the curve of the spring alone */
-    sh_filtered filtered;       /* at a tick: signals behind the filters */
+    sh_real dF[SH_MAX_COLUMNS]; /* slopes of F over phi, of the curve of the spring alone */
+    sh_filtered filtered;       /* signals after the filters, only at a tick */
 } sh_joint_point;
 
 /* Variance of a row, whose inverse is its weight. */
@@ -38,7 +38,7 @@ typedef struct {
     sh_real R;        /* [(N.m)2] */
     sh_real lasting;  /* factor in R by errors that last, >= 1 */
     sh_real torque;   /* variance of the filtered y by noise of the torque [(N.m)2] */
-    sh_real friction; /* and by friction whose sign is unknown [(N.m)2] */
+    sh_real friction; /* variance by friction of unknown sign [(N.m)2] */
     sh_real share; /* lambda of detail 14: torque over the whole variance of the filtered y, 0..1 */
 } sh_row_noise;
 
@@ -79,7 +79,7 @@ enum {
 
 typedef struct {
     int prior;   /* offset of its std deviation in sh_parameters */
-    int unit;    /* in which that is given, see columns.c */
+    int unit;    /* unit of this std deviation, see columns.c */
     int group;   /* 0: always used */
     unsigned is; /* SH_IS_*, added up */
 } sh_column_kind;

@@ -9,7 +9,7 @@ typedef struct {
 } timer;
 static volatile timer *const SYSTICK = (volatile timer *)0xe000e010;
 
-enum { CLOCK = 25000000 }; /* of the processor [Hz] */
+enum { CLOCK = 25000000 }; /* clock of the processor [Hz] */
 
 static uint32_t samples;
 

@@ -16,14 +16,14 @@ typedef enum {
 
 /* One call of the importer that reads or writes variables. */
 typedef struct {
-    void *handle;         /* from the importer; may be NULL */
-    const char *function; /* its name, for messages */
+    void *handle;         /* handle from the importer; may be NULL */
+    const char *function; /* name of the called function, for messages */
     unsigned types;       /* allowed SH_TYPE_*; 0: any reference is an error */
     sh_values values;
     int fmi3; /* 1: time is a variable, and start values can be read before the initialisation */
     const uint32_t *references;
-    size_t count;  /* of references */
-    size_t length; /* of the importer's array of values */
+    size_t count;  /* number of references */
+    size_t length; /* length of the importer's array of values */
 } sh_access;
 
 /* Reads the variables of a call. Initial outputs are computed from the values set so far. */

@@ -34,7 +34,7 @@ struct sh_instance {
     double stop_time;         /* no step may end after this time; infinite: no stop time */
     double steps;             /* communication steps made */
     double previous_step;     /* length of the last step [s]; 0: no step yet */
-    int outputs_stale;        /* in initialisation: outputs are older than the values set */
+    int outputs_stale;        /* 1 if outputs are older than the values set in initialisation */
     int parameters_unchecked; /* a parameter was set since the last check */
     size_t slopes_end; /* number of first variables in which a derivative may differ from 0 */
     void *model;       /* of sh_fmu_model.size bytes */

@@ -22,7 +22,7 @@ typedef struct {
     char guid[GUID_LENGTH];
     double time, stop_time, steps, previous_step;
     uint64_t outputs_stale;
-    uint64_t checksum; /* of all bytes of the block, taken with 0 in this place */
+    uint64_t checksum; /* checksum of all bytes of the block, with 0 in this place */
 } state_header;
 
 static const char MAGIC[8] = {'s', 'i', 'g', 'm', 'a', 'h', 'a', 't'};

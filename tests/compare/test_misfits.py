@@ -138,7 +138,7 @@ def test_scores_add_up_over_instants() -> None:
 
 def test_a_gain_of_the_torque_is_an_error_of_its_size_that_the_prior_covers() -> None:
     (row,) = compare([BY_NAME["gain 0.9, prior 0.1"]], [AWAS], [1], processes=1)
-    factor = 1 / 0.9  # of the measured torque, and so of the stiffness
+    factor = 1 / 0.9  # error of the torque gain, and so of the stiffness
     figures = row.score.figures
     assert figures["error"] == pytest.approx(100 * (factor - 1), abs=0.5)
     assert figures["claim"] == pytest.approx(100 * 0.10 * factor, rel=0.1)

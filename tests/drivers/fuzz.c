@@ -15,7 +15,7 @@
 #include "drive.h"
 
 enum { SLOTS = 3, MAX_REFERENCES = 6, TEXT = 16, MAX_TICKS = 50, BLOCKS = 16 };
-enum { CHECKSUM = 120 }; /* its place in a serialised state, behind the rest of the header */
+enum { CHECKSUM = 120 }; /* place of the checksum, at the end of the header */
 
 static const uint8_t *next, *end; /* the remaining bytes of the fuzzer */
 static void *instance;
@@ -123,7 +123,7 @@ static void check_message(int status, const char *category, const char *message)
 
 #if SH_FMI == 2
 
-static int allocations_left; /* until the allocator of the importer fails */
+static int allocations_left; /* number of allocations until the allocator fails */
 
 static void *allocate(size_t count, size_t size)
 {

@@ -107,7 +107,7 @@ def known_values(fmu: Instance) -> dict[str, list[float]]:
 
 
 EFFECTIVE = {
-    "spring.gap": 1e-3,  # so that the spring is engaged
+    "spring.gap": 1e-3,  # the spring is engaged
     # below the deformation, and above it when it is 1.2345 times as large
     **{"spring.knee_1": 0.3, "spring.knee_2": 0.3, "range.knee": 0.0, "range.knee_2": 0.0},
     **{"spring.step_at": 0.0, "spring.step_for": 0.0},  # so that it has changed at the start

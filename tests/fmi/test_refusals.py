@@ -512,7 +512,7 @@ def test_a_step_after_the_stop_time_is_refused(name: str, fmi: Fmi) -> None:
             for late in (h, 2.1e-3 * h, h):
                 said = "expected an end not after stopTime = 1.01 s"
                 refused(fmu, said, fmu.step, 1.0 + count * h, late)
-            assert fmu.step(1.0 + count * h, 1e-13) == OK  # as an importer makes it by rounding
+            assert fmu.step(1.0 + count * h, 1e-13) == OK  # a step that rounding can cause
 
 
 TOO_LARGE = "more than 11000 internal steps. Expected inputs and parameters of a joint; the largest"

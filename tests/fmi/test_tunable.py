@@ -127,7 +127,7 @@ def methods(name: str) -> list[int]:
     if name.startswith(("residual.", "filter.")):
         return [1]
     if name == "regression.memory":
-        return []  # it acts on a misfit, which takes four blocks of 50 ms to be seen
+        return []  # acts on a misfit, which shows after four blocks of 50 ms
     return [2] if name.startswith(("regression.", "torque.", "limit.relative_std")) else [1, 2]
 
 

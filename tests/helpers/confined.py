@@ -35,7 +35,7 @@ _SERVER.set_forkserver_preload(
 
 @dataclass(frozen=True)
 class Done:
-    status: int  # of the exit; negative: the number of the signal that ended it
+    status: int  # exit status; negative: the number of a signal
     out: str
     err: str
     seconds: float
@@ -81,7 +81,7 @@ def _run(folder: Path, arguments: tuple[str, ...], place: Path) -> None:
     resource.setrlimit(resource.RLIMIT_AS, (_ADDRESSES, _ADDRESSES))
     resource.setrlimit(resource.RLIMIT_FSIZE, (_FILES, _FILES))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    signal.setitimer(signal.ITIMER_REAL, _KILLED_AFTER)  # its default is to end the process
+    signal.setitimer(signal.ITIMER_REAL, _KILLED_AFTER)  # the signal ends the process
     try:
         sys.exit(main(arguments))
     finally:

@@ -244,7 +244,7 @@ class Oracle:
         # What the last row still changes, and ticks since it as far as there is something.
         self.steps, self.tick = iter(list[None]()), self.K
         self.friction_drifts = self.known = self.is_built = self.has_row = False
-        self.new_variances = False  # of stiffness and torque, to be computed at this tick
+        self.new_variances = False  # whether this tick computes the variances
         self.set_beta()
         self.sigma = self.y = self.delay = 0.0
         self.resting = self.unsure = 0

@@ -19,7 +19,7 @@ from fmpy import fmi2, fmi3
 OK, WARNING, DISCARD, ERROR = 0, 1, 2, 3
 SIZE, REAL = ctypes.c_size_t, ctypes.c_double
 InstanceT = TypeVar("InstanceT", bound="_Instance")
-ENVIRONMENT = 4711  # of the importer, which the logger receives
+ENVIRONMENT = 4711  # environment pointer that the logger receives
 
 
 @cache
@@ -193,8 +193,8 @@ class Instance(_Instance):
         logging_on: bool = True,
     ) -> None:
         super().__init__(fmu)
-        self.names: set[str] = set()  # of the instance, that the logger received
-        self.blocks: set[int] = set()  # of memory that the instance allocated and has not freed
+        self.names: set[str] = set()  # instance names that the logger received
+        self.blocks: set[int] = set()  # addresses of memory that is not freed yet
         self.callbacks = fmi2.fmi2CallbackFunctions()
         if logger:
             self.callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(self._log)

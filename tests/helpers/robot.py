@@ -66,7 +66,7 @@ rls.m = 1
 class Estimated:
     table: pa.Table  # what `sigmahat estimate` wrote for each sample
     stiffness: float  # at the end [N.m/rad]
-    std: float  # its standard deviation [N.m/rad]
+    std: float  # standard deviation of the stiffness [N.m/rad]
     confident: float  # share of the samples [1]
 
 

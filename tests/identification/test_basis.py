@@ -57,7 +57,7 @@ def test_a_spring_that_is_softer_to_one_side(path: Path) -> None:
     error, std = within(log, path, STIFFER)
     assert np.mean(error <= 1.96 * std) >= 0.9
     assert np.max(error) < 0.05
-    # THEN the odd powers, which somebody has asked for, are kept and do not hold it
+    # THEN the odd powers, which a user has chosen, are kept, and do not contain the truth
     path.write_text(CONFIGURATION + ODD)
     error, std = within(log, path, STIFFER)
     assert read_configuration(path).parameters["rls.symmetric"]

@@ -138,7 +138,7 @@ def test_values_are_written_where_they_stand(parameters: str, found: Found, path
     read = read_configuration(path).parameters
     assert set(written) == {f"parameters.{name}" for name in read}
     with Fmu(sigmahat.fmu("StiffnessEstimator")) as fmu:
-        fmu.parameters(read)  # they are the FMU's, and in range
+        fmu.parameters(read)  # the names are in the FMU, the values in range
     for name, key in (("B", "motor.B"), ("D_theta", "motor.D_theta")):
         assert read[key] == pytest.approx(TRUE[name], rel=0.05)
     assert read["prior.tau_coulomb"] == pytest.approx(TRUE["tau_coulomb"], rel=0.05)

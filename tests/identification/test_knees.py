@@ -13,7 +13,7 @@ from sigmahat.identification.spring import knees
 
 T, GAMMA, K = 1e-3, 50.0, 400.0
 FORM = Form(20.0, 50.0, n=4, symmetric=False)
-LARGEST, ZERO = 0.03, 0.004  # of the deformation [rad], of its zero
+LARGEST, ZERO = 0.03, 0.004  # largest deformation, and its zero [rad]
 
 
 Spring = Callable[[Array], Array]

@@ -31,7 +31,7 @@ return count;
 """
 
 
-WITHIN = 1e-12  # of the range of each output; what the project promises
+WITHIN = 1e-12  # error over the range of each output
 _SIMULATE = """
 const [method, plant, estimator, count] = given;
 joint.form.elements.method.value = METHODS[method];

@@ -102,7 +102,7 @@ def test_what_was_learned_from_is_said_and_handed_on(learned: Shell) -> None:
     # WHEN a second log goes on from it
     said = learned.run(f"{SECOND} --start-from first/state.json")
     assert "continued from what was learned from first.parquet" in said
-    assert learned.err == ""  # the gap between the logs is no news
+    assert learned.err == ""  # the gap between the logs is not reported
     state = json.loads(Path("second/state.json").read_text())
     sheet = json.loads(Path("second/joint.json").read_text())
     assert [each["file"] for each in state["logs"]] == ["first.parquet", "second.parquet"]

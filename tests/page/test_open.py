@@ -57,7 +57,7 @@ def test_from_an_empty_configuration_to_the_results(shell: Shell) -> None:
             low, high = middle["interval [N.m/rad]"]
             assert low < 1000 < high
             other.sees(f"{middle['sigma [N.m/rad]']:.4g} {low:.4g} to {high:.4g}")
-            assert "phi^11" not in hand.text()  # of orders that nobody has chosen
+            assert "phi^11" not in hand.text()  # no powers of orders that nobody has chosen
             written = tomlkit.parse(Path("knee.toml").read_text()).unwrap()
             hand.presses("estimate")  # identifies, too
             hand.sees("Results: ")

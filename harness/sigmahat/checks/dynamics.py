@@ -16,7 +16,7 @@ from sigmahat.identification.quantities import WIDE
 from sigmahat.identification.regression import MOTOR
 from sigmahat.logs.units import scale
 
-_MATTERS = 0.05  # of the covered deformation: a smaller error of its zero is left to prior.bias
+_MATTERS = 0.05  # share of the covered deformation; prior.bias covers smaller errors of zero
 _STD = 3.0  # a prior contradicts the log beyond this number of standard deviations
 
 
@@ -55,7 +55,7 @@ def _delays(seen: View, found: Fitted) -> Iterator[Finding]:
         yield lag[0]
 
 
-_Delay = tuple[Finding, float]  # and the sum of the squared errors without the delay
+_Delay = tuple[Finding, float]  # finding, and sum of squared errors without delay
 
 
 def _sign(seen: View, found: Fitted) -> Finding | None:

@@ -21,9 +21,9 @@ from sigmahat.logs.log import Array
 LINEAR = "eta[0,0]"  # the column of the linear spring in a symmetric polynomial
 _SLOWEST = 0.1  # [s] between ticks: a slower log does not show the motion of a joint
 _ORDERS = 3
-_PARTS = 8  # of a log, in each of which a spring may be another one
+_PARTS = 8  # number of parts of a log; each may have another spring
 _SPARE = 6  # blocks of a part beyond its columns
-_STEPS = 4  # of Newton's method for the delay
+_STEPS = 4  # number of steps of Newton's method for the delay
 LONGEST = 0.1  # largest delay [s]
 _BETTER = 0.7
 """Largest ratio of the squared errors, after to before, if a change explains the log. Significance

@@ -112,7 +112,7 @@ def _unit_by_velocity(column: Column, signals: Sequence[Column], T: float) -> st
         scale = scale_of_derivative(column.window, other.window, T)
         if scale is None:
             continue
-        turn = TURN[unit] * (60 if minute else 1) / abs(scale)  # of the position, in its unit
+        turn = TURN[unit] * (60 if minute else 1) / abs(scale)  # of the joint, in its unit
         best = min(TURN, key=lambda each: abs(math.log(turn / TURN[each])))
         if abs(math.log(turn / TURN[best])) < 0.05:
             return best

@@ -102,5 +102,5 @@ def is_hidden(system: Equations, f_0: float, T: float, noise: float, known: bool
     others, spring = R[:, :-2], R[:, -2]  # the last one is y
     left = spring - others @ np.linalg.lstsq(others, spring, rcond=None)[0]
     variance = float(left @ left) / int(system.rows.sum()) * system.units[0] ** 2
-    share = min(1.0, _BUTTERWORTH * 4 * f_0 * T)  # of white noise, every second sample
+    share = min(1.0, _BUTTERWORTH * 4 * f_0 * T)  # share of white noise in every second sample
     return bool(noise * share > _HIDDEN * variance)

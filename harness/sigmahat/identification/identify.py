@@ -34,7 +34,7 @@ _RESOLVED = 0.07
 Hz, the coverage is worse with 0.05, which is too slow, and with 0.15, because the signals between
 samples are then no lines."""
 _V_A = tuple(10.0**e for e in np.arange(5.0, 13.1, 0.5))
-_MATTERS = 0.05  # of the covered deformation: a smaller error of its zero is left to prior.bias
+_MATTERS = 0.05  # share of the covered deformation; prior.bias covers smaller errors of zero
 _V_A_TICKS = 10000
 _NO_TORQUE = (
     "the torque of the motor is only noise: such a log does not show its inertia and friction, and "

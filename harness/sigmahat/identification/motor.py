@@ -51,7 +51,7 @@ class MotorFit:
 
     quantities: dict[str, Quantity]
     """B, D_theta and tau_coulomb, and the zero of the deformation where there is one."""
-    gain: tuple[float, float]  # of a measured torque: value, and half of the 95 % interval
+    gain: tuple[float, float]  # gain of a measured torque, half of its 95 % interval
     contradicted: bool
     """Whether the B of the log contradicts the known B. Then B counts as not determined, and the
     other quantities are identified with the known B."""
@@ -133,8 +133,8 @@ class Variants:
     """
 
     first: Fit
-    others: Sequence[Fit]  # with other filters, or with the ends of a known inertia
-    frictions: Sequence[Fit]  # with other forms of friction
+    others: Sequence[Fit]  # fits with other filters, or ends of a known inertia
+    frictions: Sequence[Fit]  # fits with other forms of friction
 
 
 def _frictions(plain: Form) -> list[Form]:

@@ -42,7 +42,7 @@ CONSTANT = "constant"  # name of the column of c
 _BLOCK = 0.25  # [s]; errors further apart are taken as independent
 _WINDOW = 1 << 14  # rows that are filtered at a time, about
 _EDGE = 0.1  # [s] left out at both ends of a piece, where the filter has not settled
-_PARTS = 8  # of a log, of which each is predicted from the others
+_PARTS = 8  # number of parts of a log; each is predicted from the others
 _LEAST = 40  # samples of a stretch: filters need some
 
 
@@ -103,7 +103,7 @@ class Form:
 
     def names(self, sensor: bool) -> list[str]:
         """Names of the columns. With a torque sensor the polynomial is replaced by a gain."""
-        has_constant = sensor or self.symmetric  # else it is a coefficient of the polynomial
+        has_constant = sensor or self.symmetric  # else the polynomial has the constant
         return [
             *MOTOR,
             *(["load"] if self.load_friction else []),
@@ -207,7 +207,7 @@ class Rows:
     y: Array  # [size: 2 x rows]
     X: Array  # [size: 2 x rows x columns]
     Z: Array  # the same
-    place: NDArray[np.intp]  # of the rows in the piece, without a gap
+    place: NDArray[np.intp]  # places of the rows in the piece, without a gap
 
 
 def rows(

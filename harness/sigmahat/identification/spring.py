@@ -177,11 +177,11 @@ def with_two_springs(pieces: Sequence[Signals], first: int) -> list[Signals]:
     return found
 
 
-_SHARES = np.linspace(0.1, 0.9, 17)  # of the usual deformation: places that are compared
+_SHARES = np.linspace(0.1, 0.9, 17)  # compared places, over the usual deformation
 _NOT_RARE = 0.995  # quantile of the deformation that is not rare
-_FINER = np.linspace(-0.04, 0.04, 9)  # added to the best ones, for places near them
+_FINER = np.linspace(-0.04, 0.04, 9)  # offsets from the best places, for nearby places
 _KNEES_APART = 0.1  # least distance of two knees
-_LEAST_CHANGE = 0.25  # of the slope at a knee, over that at the other one
+_LEAST_CHANGE = 0.25  # least change of slope at a knee, over the other knee
 _MOST = 100_000  # samples that are used
 
 

@@ -181,7 +181,7 @@ def polynomial(
 
 
 _MOST_POWERS = 8  # largest rls.n of the FMU
-_MOST_COEFFICIENTS = 24  # with more, the FMU may have no column left for everything else
+_MOST_COEFFICIENTS = 24  # limit, so that columns remain in the FMU for further effects
 _SAME = 1e-6  # relative difference of two stiffnesses by rounding
 
 

@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 RECORD = ("sigma", "sigma_std", "tau_e", "phi", "misfit", "confident", "valid")
 """Outputs that are recorded by default."""
 
-POINT = ("tau_e", "tau_e_std", "sigma", "sigma_std")  # of evaluate(), in the order of sh_point
+POINT = ("tau_e", "tau_e_std", "sigma", "sigma_std")  # results of evaluate(), as in sh_point
 
 _LONG = 1.0  # [s] a motion that is compared with range.phi
 _FAR, _WIDE = 1.2, 8.0  # ratio of the largest deformation to range.phi, and inverse ratio

@@ -142,8 +142,8 @@ def is_number(text: str) -> bool:
 MOST_COLUMNS = 2000
 _NUMBERS, _SMALL = 15_000_000, 10_000_000  # allowed numbers in a file up to this size [bytes]
 _TOGETHER = 2  # factor for all columns together, where they are needed at the same time
-_NUMBERS_PER_BYTE = 3  # for further bytes; without compression, at most 1 is possible
-_BYTES = 400_000_000  # of all columns of a file that is read as a whole
+_NUMBERS_PER_BYTE = 3  # limit for further bytes; without compression, at most 1 is possible
+_BYTES = 400_000_000  # limit for all columns of a file that is read as a whole
 MOST_TEXT = 100_000_000  # characters of a column of text at a time
 
 

@@ -37,7 +37,7 @@ from sigmahat.logs.sampling import Samples
 _ROWS = 1 << 15
 _STEM = "estimate"
 _PREFIX = "estimate."
-_REPEATED = 2  # from this number of rows per distinct value on, a dictionary is shorter
+_REPEATED = 2  # rows per distinct value, from which a dictionary is shorter
 _TIME = "t"
 _TIMES = (_TIME, "change_age")
 _DOUBT, _VALID = "doubt", "valid"  # a text, and a flag

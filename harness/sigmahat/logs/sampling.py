@@ -25,8 +25,8 @@ from sigmahat.logs.units import convert, factor, seconds, unwrap
 AT_TICK = 1e-3  # largest distance of a sample from its tick, in periods
 _USUAL_INTERVALS = 3.0
 _MOST_TICKS = 5_000_000
-_MOST_TICKS_OF_MANY_ROWS = 20  # per row: the memory for the ticks goes with the size of the log
-_MOST_TICKS_PER_ROW = 200  # else the time has another unit
+_MOST_TICKS_OF_MANY_ROWS = 20  # ticks per row; limits memory by the size of the log
+_MOST_TICKS_PER_ROW = 200  # with more, the unit of the time is wrong
 _PART = 1 << 16  # samples that are compared at a time, for the memory
 _LONG_AGO = 1e6  # [s] A time that is larger counts from 1970, or from the start of a machine.
 

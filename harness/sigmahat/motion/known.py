@@ -14,7 +14,7 @@ from sigmahat.logs.sampling import sample
 from sigmahat.motion.design import NOISE, Sensors
 from sigmahat.motion.joints import Joint, Limits, Ranges
 
-_COUNTS = 400_000.0  # per turn at the gear output, without a configuration
+_COUNTS = 400_000.0  # counts per turn at the gear output, without a configuration
 _PERIOD = 1e-3  # [s]
 _WITHIN = 1.2  # values of a log are multiplied and divided by this factor
 _LINK_BELOW = 20.0  # [Hz] motion of the link below this frequency is used

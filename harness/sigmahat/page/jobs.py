@@ -19,7 +19,7 @@ from sigmahat.logs.log import Log, LogError
 from sigmahat.page.setup import Chosen, Look, Setup
 
 _BUCKETS = 80
-_WIDTH, _HEIGHT = 160, 28  # of the line of a preview
+_WIDTH, _HEIGHT = 160, 28  # size of the line in a preview
 
 
 def look(log: Log, name: str) -> Look:

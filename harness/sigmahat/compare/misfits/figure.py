@@ -15,7 +15,7 @@ from sigmahat.plotting.style import CYCLE
 _MARKERS = dict(zip((joint.name for joint in JOINTS), "o^s", strict=True))
 _COLORS = dict(zip(Group, CYCLE, strict=True))
 _GREY = "#888888"
-_LIMITS = 0.05, 100.0  # of both axes, wider if a row needs it [%]
+_LIMITS = 0.05, 100.0  # limits of both axes, wider if a row needs it [%]
 
 
 def draw(rows: Sequence[Row]) -> Figure:

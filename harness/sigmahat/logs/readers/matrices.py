@@ -27,7 +27,7 @@ _KINDS = {*range(1, 8), 9, 12, 13, _MATRIX, 16, 17, 18}  # numbers, matrices, te
 _HEAD = 128  # bytes
 _PIECE = 1 << 16  # bytes of the file that are unpacked at a time
 _MOST = 300_000_000  # bytes
-_MOST_OF_PARTS = 80_000_000  # of structures and cells: 8 bytes can become an object of 100 bytes
+_MOST_OF_PARTS = 80_000_000  # limit for structures and cells: 8 bytes can need 100
 _MOST_ELEMENTS = 1_000_000
 _NUMBERS = {"double", "single", "logical"} | {
     f"{u}int{n}" for u in ("", "u") for n in (8, 16, 32, 64)
@@ -106,7 +106,7 @@ def _is_plain(path: Path) -> bool:
         return False
 
 
-_MOST_COLUMNS = 256  # of one matrix; a larger matrix is an image, not a log
+_MOST_COLUMNS = 256  # limit of one matrix; a larger matrix is an image, not a log
 _DEEPEST = 32  # groups of HDF5 in groups
 
 Named = Iterator[tuple[str, NDArray[np.generic]]]

@@ -32,7 +32,7 @@ _BLOCK = 1 << 20  # bytes of a CSV file that are parsed at a time
 _ALWAYS_READ = 100_000_000  # bytes without compression that every file may have
 _LINES = 20  # lines that are checked before the text is parsed
 _BUFFER = 1 << 16  # bytes of a column that are read from a file at a time; else a whole row group
-_ROWS = 1 << 16  # of a column that are read at a time
+_ROWS = 1 << 16  # rows of a column that are read at a time
 _FEW = 100  # rows with text that are checked at a time
 
 
