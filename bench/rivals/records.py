@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-# Relative standard deviations of the data sheets, as drawn, and as the methods are given them.
+# Relative standard deviations of the data sheets, as drawn, and as given to the methods.
 STD_B = 0.05
 STD_D = 0.2
 STD_GAIN = 0.015  # of the measured torque, which no log shows

@@ -1,4 +1,4 @@
-"""How right an estimate of a log and its interval are, and the table of all results."""
+"""Scores of an estimate of a log and its interval, and the table of all results."""
 
 import math
 from collections.abc import Callable, Sequence

@@ -193,8 +193,8 @@
 #define SH_LEAST_LIMIT ((sh_real)2)
 /* Std deviations of its prior beyond which a corrected motor parameter is doubted [1]. */
 #define SH_OUTSIDE_PRIOR ((sh_real)3)
-/* Std deviations below 0 from which viscous friction is doubted [1]: encoders that are read at different times do
- * that. Of 40 simulated logs, all eight with a late encoder had a friction below 0, and no other one.
+/* Std deviations below 0 from which viscous friction is doubted [1]: encoders are then read at different times. Of 40
+ * simulated logs, all eight with a late encoder had a friction below 0, and no other one.
  */
 #define SH_BELOW_ZERO ((sh_real)1)
 

@@ -71,9 +71,9 @@ sh_status sh_check_parameters(sh_instance *instance);
  */
 sh_status sh_initialize(sh_instance *instance);
 
-/* Saving, restoring and serialising the state of the FMU. A function that fails returns SH_ERROR after
- * a message, and changes nothing. sh_save_state writes the state to *state, or to new memory if *state
- * is NULL; the serialised state has *size bytes.
+/* Saving, restoring and serialising the state of the FMU. A function that fails returns SH_ERROR after a message, and
+ * changes nothing. The function sh_save_state writes the state to *state, or to new memory if *state is NULL; the
+ * serialised state has *size bytes.
  */
 sh_status sh_save_state(void *handle, void **state, const char *function);
 sh_status sh_restore_state(void *handle, void *state, const char *function);

@@ -30,8 +30,8 @@ def passes(e: Estimator) -> bool:
 @pytest.mark.parametrize("method", [PAPER2011, FILTERED_REGRESSION])
 @pytest.mark.parametrize("joint", JOINTS)
 def test_every_state_of_a_run_passes(c: Library, method: int, joint: dict[str, Any]) -> None:
-    """GIVEN a run with gaps, refused samples, and changes of the modality and of the noise, on
-    which the spacing of the rows depends at the start, THEN each of its 1500 states passes."""
+    """GIVEN a run with gaps, refused samples, and changes of the modality and of the noise, THEN
+    each of its 1500 states passes. The spacing of the rows depends on the noise at the start."""
     rng = np.random.default_rng(1)
     e = Estimator(c, {"method": method, **joint})
     assert passes(e)

@@ -61,7 +61,7 @@ def test_limits_by_other_parameters(
 
 
 def test_a_curve_of_exact_shape_needs_a_nominal_curve_and_its_uncertainty(c: Library) -> None:
-    """FilteredRegression requires them if prior.tau_e = 0, so that the shape is exact."""
+    """FilteredRegression requires both if prior.tau_e = 0, which makes the shape exact."""
     exact = {"method": 2, "prior.tau_e": 0.0}
     for values in (exact, {**exact, "prior.nominal": 0.3}):
         problem = c.violation(c.parameters(values))

@@ -234,8 +234,8 @@ def test_single_samples_that_were_lost_are_counted() -> None:
 def test_a_lost_sample_of_a_counter_differs_from_one_that_wraps(
     sample: int, are_lost: bool
 ) -> None:
-    """GIVEN a counter of 16 bits whose largest value is `sample`, and there another value, THEN
-    this sample is lost, unless it is one count more, over the wrap."""
+    """GIVEN a counter of 16 bits with another value where `sample` is the largest one, THEN this
+    sample counts as lost, unless it is one count more, after a wrap."""
     counts = knee_log()["motor_counts"]
     largest = int(np.argmax(counts))
     wrapped = np.mod(counts - counts[largest] + sample, 65_536)

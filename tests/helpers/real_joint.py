@@ -134,8 +134,8 @@ def replay(
 
 
 def coverage(measured: Sequence[Log], fit: Estimator) -> float:
-    """Share of the points every 0.01 rad at which the slope of the mean curve, within 0.02 rad, is
-    within 1.96 sigma_std of the estimate, when the logs are replayed a second time [%]."""
+    """Share of points, every 0.01 rad, with the slope of the mean curve (over +-0.02 rad) within
+    1.96 sigma_std of the estimate, in a second replay of the logs [%]."""
     found = fit.run(**inputs(measured))
     inside, first = [], 0
     for log in measured:

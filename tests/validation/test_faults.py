@@ -56,8 +56,8 @@ def test_a_counter_that_begins_in_another_turn(shell: Shell) -> None:
     assert moved in found["notes"]
     value, half = found["stiffness of this log [N.m/rad]"]
     assert abs(value - KNEE["spring.k_1"]) < half < 50
-    # THEN without range.phi nothing is moved, for nobody knows how large the deformation may be,
-    # but what was seen is named with the key
+    # THEN without range.phi the counter stays, because the largest deformation is not known, but
+    # the message names the turn and the key
     found = validate(shell, WRAPPED.replace("range.phi = 0.03\n", ""), 1)
     assert not found["agree"]
     assert not any("periods of its counter" in note for note in found["notes"])

@@ -6,8 +6,8 @@ must fit the torque at least as well as before.
 
 The torque is no proof either if it looks like the torque of a spring. This happens if it is a
 function of the position, as under gravity, or if a hand moves the link and the motor holds its
-position. So a slope of slow motion with a high correlation needs no proof by the torque if the
-slope is negative, or fits a likely mistake, such as a gear ratio with one zero too many.
+position. So a slope of slow motion with a high correlation needs no proof by the torque in two
+cases: it is negative, or fits a likely mistake, such as a gear ratio with one zero too many.
 """
 
 import math

@@ -31,8 +31,8 @@ _LONGEST = 600.0  # [s] of a log that are used
 _FEWEST = 1000  # samples of the longest stretch that are left if the motor moves slowly
 _RESOLVED = 0.07
 """Largest bandwidth of the estimator, in sampling frequencies. For joints that are sampled at 250
-Hz, the coverage is worse with 0.05, which is too slow, and with 0.15, because the signals between
-samples are then no lines."""
+Hz, other values reduce the coverage. 0.05 is too slow; with 0.15, the signals between samples are
+no lines."""
 _V_A = tuple(10.0**e for e in np.arange(5.0, 13.1, 0.5))
 _MATTERS = 0.05  # share of the covered deformation; prior.bias covers smaller errors of zero
 _V_A_TICKS = 10000

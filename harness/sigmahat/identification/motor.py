@@ -38,7 +38,7 @@ class KnownInertia:
     std: float  # standard deviation of its relative error, > 0
 
     def contradicts(self, found: Quantity) -> bool:
-        """Whether B is so far off that the scale of the torque may be wrong: a wrong torque
+        """Whether B is so far off that the scale of the torque may be wrong. A wrong torque
         constant or gear ratio changes B and the stiffness by the same factor.
         """
         most = self.value * max(_FAR * self.std, _ANOTHER)

@@ -57,8 +57,8 @@ class Estimator:
         single mapping is for all joints, and the first samples give the number of joints. `record`
         names the outputs that run() and tick() return.
 
-        Raises ValueError for a name that the FMU does not have, and for a value that does not fit
-        or is out of its range; RuntimeError if this installation has no library for this platform.
+        Raises ValueError for an unknown name, and for a value that does not fit or is out of its
+        range. Raises RuntimeError if the installation has no library for this platform.
         """
         several = not isinstance(parameters, Mapping)
         given = list(parameters) if not isinstance(parameters, Mapping) else [parameters]

@@ -152,7 +152,7 @@ class Jobs:
         self._later(partial(self._show, version, answer=found, busy=""))
 
     def _identify_and_estimate(self, version: int, text: str) -> None:
-        """Writes the results, and gives the setup the configuration with what was identified."""
+        """Writes the results, and gives the setup the configuration with the identified values."""
         from sigmahat.checks.check import check
         from sigmahat.checks.text import rows
         from sigmahat.files.output import output_folder

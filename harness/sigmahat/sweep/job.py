@@ -75,9 +75,8 @@ def sweep(
     progress   called with the number of runs done since the last call, first with the runs of
                earlier calls
 
-    Raises ValueError if the plan does not fit its scenarios or every run failed, FmuError if an FMU
-    refuses a listed value, WorkerError if workers are missing or lost, and OSError if a file cannot
-    be written.
+    Raises ValueError if the plan does not fit its scenarios or every run failed. Raises FmuError if
+    an FMU refuses a listed value, WorkerError without workers, OSError if a file cannot be written.
     """
     check(plan)
     with created_folder(out):

@@ -3,8 +3,8 @@
 A vector is a column. A matrix is as many columns as its shorter side is long: "x[0]", "x[1]". In a
 structure or group, the path is part of the name: "joint.theta".
 
-The elements of a MAT file of version 5 to 7 are checked before scipy reads the file, because scipy
-unpacks variables of any size, and uses the kind of an element as an index. After a head
+The elements of a MAT file of version 5 to 7 are checked before scipy reads the file. The reason is
+that scipy unpacks variables of any size, and uses the kind of an element as an index. After a head
 of 128 bytes, each variable has a tag of two integers, kind and number of bytes, and then its bytes.
 A variable is a sequence of such elements again.
 """
