@@ -17,7 +17,7 @@ void sh_change_start(sh_regression_state *state)
 
     sh_information_start(&change->changed, state->columns.size, 1);
     change->level = change->usual_misfit = 1;
-    change->blocks = SH_LONGEST_TEST; /* begin with the first block that can show a change */
+    change->blocks = SH_LONGEST_TEST; /* it begins with the first block that can show a change */
     state->history.change_age = -1;
 }
 
@@ -114,7 +114,7 @@ static void adopt(sh_regression_state *state, const sh_parameters *p)
     sh_refit_begin(state, p);
     change->following = 1;
     change->usual_misfit *=
-        SH_SUDDEN_MISFIT; /* the estimate of the motor data may not fit either */
+        SH_SUDDEN_MISFIT; /* what was learned of the motor may not fit as well */
     change->friction_blocks = 0;
     begin(state);
 }

@@ -43,7 +43,7 @@ static int is_choice(const sh_regression_state *state, const sh_posterior *poste
     int i;
 
     /*@ loop unroll SH_MAX_COLUMNS; */
-    for (i = 0; i < SH_MAX_COLUMNS; ++i) { /* after the choice: 0, or of an earlier choice */
+    for (i = 0; i < SH_MAX_COLUMNS; ++i) { /* also behind the choice: of an earlier one, or zero */
         if (posterior->column[i] < 0 || posterior->column[i] >= size) {
             return 0;
         }
