@@ -56,8 +56,8 @@ def test_a_column_that_begins_with_numbers_may_go_on_with_text(tmp_path: Path) -
 
 @pytest.mark.parametrize("begin", [0, 500], ids=["whole numbers", "fractions later"])
 def test_whole_numbers_stay_whole_numbers(begin: int, tmp_path: Path) -> None:
-    # GIVEN nanoseconds since 1970, which a float64 does not hold, and a column that is whole
-    # at rest and has fractions behind the part of the file that decides on the types
+    # GIVEN nanoseconds since 1970, which a float64 does not hold, and a column of whole numbers;
+    # in the second case it has fractions after the part of the file that decides on the types
     rows = ROWS if not begin else 60_000
     stamps = 1_700_000_000_123_456_789 + 1_000_000 * np.arange(rows, dtype=np.int64)
     note = np.array(["0"] * (rows - begin) + ["0.5"] * begin)

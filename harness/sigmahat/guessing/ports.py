@@ -157,7 +157,7 @@ def _is_vague(port: PortGuess) -> bool:
 
 
 def _set_unit_by_other(port: PortGuess, other: PortGuess, slope: float) -> None:
-    """The unit of a vague position, whose values are slope times those of the other position."""
+    """The unit of a position from the other one; its values are slope times the other values."""
     if other.unit in TURN:
         same = [unit for unit in TURN if abs(slope * TURN[other.unit] / TURN[unit] - 1) < _AS_FAR]
         port.unit = same[0] if same else other.unit

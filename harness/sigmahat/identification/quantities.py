@@ -34,7 +34,7 @@ class Quantity:
 
     @property
     def told(self) -> bool:
-        """The name of `determined` up to version 0.1."""
+        """Old name of `determined`, up to version 0.1."""
         warnings.warn("Quantity.told is now .determined", DeprecationWarning, stacklevel=2)
         return self.determined
 

@@ -26,8 +26,8 @@ _EXACT = 1e-3  # error of a polynomial, relative to its largest torque, that is 
 _MISSING = {
     "mjcf": "",
     "sdf": "SDF has no rotor inertia: the link rotor has this inertia, at the gear output.",
-    "urdf": "URDF has no spring: the element gazebo has the spring, for Gazebo alone. URDF has no "
-    "rotor inertia: the link rotor has this inertia, at the gear output.",
+    "urdf": "URDF has no spring: the element gazebo contains it, and only Gazebo reads it. URDF "
+    "has no rotor inertia: the link rotor has this inertia, at the gear output.",
     "drake": "Drake has no Coulomb friction in a joint: it does not use the element friction.",
 }
 
