@@ -96,8 +96,8 @@ def go_on(slave: Slave, learned: Learned, every: Mapping[str, Value], configurat
     """
     theirs, ours = learned.fmu, FmuId.of(slave.fmu)
     if theirs != ours:
-        found, wanted = (f"{f.name}.fmu {f.version} ({f.guid})" for f in (theirs, ours))
-        raise LogError(f"{learned.path}: state of {found}, expected {wanted}; {_AGAIN}")
+        told, wanted = (f"{f.name}.fmu {f.version} ({f.guid})" for f in (theirs, ours))
+        raise LogError(f"{learned.path}: state of {told}, expected {wanted}; {_AGAIN}")
     try:
         t_0 = slave.restore(learned.state)
     except FmuError as error:
