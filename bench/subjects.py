@@ -42,11 +42,11 @@ class Subject:
     """Does the piece of work `count` times."""
     count: int
     every: int = 1
-    """It runs only in every round whose number is a multiple of this."""
+    """The subject runs only in every round whose number is a multiple of this."""
 
 
 def doubles(array: Array) -> Any:
-    """Pointer to a contiguous array. It is valid only as long as the array exists."""
+    """Pointer to a contiguous array. The pointer is valid only as long as the array exists."""
     assert array.flags.c_contiguous and array.dtype == np.float64
     return array.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
 

@@ -14,7 +14,7 @@ SIZES = {"max_n": "SH_MAX_N", "max_m": "SH_MAX_M", "max_columns": "SH_MAX_COLUMN
 
 
 class SigmahatConan(ConanFile):  # type: ignore[misc] # Conan has no types
-    """Recipe. Without a size, the estimator has the largest."""
+    """Recipe. Without this option, the estimator has the largest size."""
 
     name = "sigmahat"
     description = "Stiffness of flexible robot joints, estimated on line"
@@ -59,7 +59,7 @@ class SigmahatConan(ConanFile):  # type: ignore[misc] # Conan has no types
         cmake_layout(self)
 
     def _definitions(self) -> dict[str, str]:
-        """What the library and every file that includes sigmahat.h are compiled with."""
+        """Definitions for the library, and for every file that includes sigmahat.h."""
         sizes = {SIZES[size]: value for size, value in self._sizes().items()}
         return sizes | ({"SH_REAL": "float"} if self.options.real == "float" else {})
 

@@ -1,4 +1,4 @@
-/* Whether a state that comes from elsewhere can be used: the question goes to the method. */
+/* Checks whether a state from elsewhere can be used; the check of the method decides. */
 #include <stddef.h>
 
 #include "method.h"

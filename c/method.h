@@ -35,9 +35,9 @@ typedef struct {
      *
      * estimate  in: that of the last tick; out: everything but setPoint, confident and valid
      *
-     * Returns 1. Returns 0 if the numbers are too large: then estimate is unchanged. The filters of Paper2011 stay as
-     * they were; those of FilteredRegression start again as after a gap, and what the sample has already changed
-     * in its regression stays.
+     * Returns 1. Returns 0 if the numbers are too large: then estimate is unchanged. The filters of Paper2011 do not
+     * change. The filters of FilteredRegression start again as after a gap, but changes of its regression by this
+     * sample stay.
      */
     int (*tick)(sh_estimator *estimator, const sh_parameters *p, const sh_measurement *z,
                 sh_real set_point, sh_estimate *estimate);

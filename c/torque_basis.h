@@ -23,7 +23,7 @@
 void sh_torque_basis(int symmetric, int n, int m, sh_real set_point, sh_real phi,
                      sh_real *restrict F, sh_real *restrict dF);
 
-/* Which i has the power 1 of phi. */
+/* Index i of the power 1 of phi. */
 int sh_torque_basis_linear(int symmetric);
 
 #endif

@@ -18,8 +18,8 @@
  *
  * Advantage: the four entries of a column are two pairs (pair.h). So every inner loop computes four neighbours in the
  * same way, without a test for the diagonal. Cost: the zeros and ones need memory (200 entries in place of 153 for 18
- * parameters). They are also computed with, which is much for 3 parameters, and the loops below run over panels.
- * Figures are in docs/performance.md.
+ * parameters). The loops below run over panels, and also compute with these unused places. For 3 parameters, this
+ * costs much. Figures are in docs/performance.md.
  */
 #include "ud_factor.h"
 
@@ -213,8 +213,8 @@ static inline void rotate(sh_real *u, sh_pair s, sh_pair g, sh_pair *p_0, sh_pai
     *p_1 = sh_pair_add(*p_1, sh_pair_multiply(g, u_1));
 }
 
-/* A column whose D_j has underflowed to 0 has no part in P any more. It would go on to change by
- * rounding errors alone, which grow until they overflow; so it is cleared.
+/* A column whose D_j has underflowed to 0 has no part in P any more. The column is cleared, because otherwise
+ * rounding errors alone would change it and grow until they overflow.
  */
 static void clear_underflowed(sh_ud_factor *P)
 {

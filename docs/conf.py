@@ -46,7 +46,7 @@ html_theme_options = {
     "footer_start": ["copyright"],
     "footer_end": [],
 }
-html_context = {"default_mode": "auto"}  # light or dark, as the system is
+html_context = {"default_mode": "auto"}  # light or dark, as in the system
 html_sidebars: dict[str, list[str]] = {"index": [], "live": []}
 copyright = "sigmahat, BSD-2-Clause"
 html_static_path = ["static"]

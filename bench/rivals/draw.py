@@ -1,12 +1,12 @@
-"""Draws joints at random, from ranges that are stated here. Nothing is tuned to any method.
+"""Draws joints at random, from ranges that are stated here. The ranges favour no method.
 
-A range is log-uniform if its name begins with LOG_, else uniform. Draws that no designer would make
-are drawn again: a motor that does not match its load, a joint that swings slower or faster than
-joints do, an encoder that cannot see the deformation, a motor too weak to hold its arm.
+A range is log-uniform if its name begins with LOG_, else uniform. Implausible draws are repeated: a
+motor that does not match its load, a resonance that is too low or too high, an encoder too coarse
+for the deformation, a motor too weak for its arm.
 
-Nobody tunes on the seeds of docs/rivals.md, 9001 to 9040: they were fixed in the commit that
-brought the joints, before any method saw one of them. The seeds of a second look are 9101 to 9140,
-fixed before they were run, too. All other seeds are for development.
+Do not use the seeds of docs/rivals.md, 9001 to 9040, for tuning: the commit that added the joints
+fixed these seeds, before any method was run. The seeds of a second test, 9101 to 9140, were also
+fixed before their run. All other seeds are for development.
 """
 
 import math
@@ -38,7 +38,7 @@ LOG_PEAK_BY_B: Range = (3e3, 15e3)  # peak torque by inertia [rad/s2]
 LOG_D_BY_B: Range = (1.0, 30.0)  # [1/s]
 LOG_STICTION_TIME: Range = (1e-3, 1e-2)  # [s]
 
-# Its friction, with one of the models M1 to M6. Torques by the peak torque.
+# Friction of the joint, with one of the models M1 to M6. Torques by the peak torque.
 LOG_DRY: Range = (0.005, 0.08)
 STATIC_SHARE: Range = (0.0, 0.6)  # share of the dry friction at rest that motion takes away
 LOG_V_S: Range = (0.05, 2.0)  # [rad/s]
@@ -229,7 +229,7 @@ class _Multisine:
         return 2j * np.pi * self.frequencies.astype(np.complex128)
 
     def harmonics(self, response: Complex) -> Array:
-        """What a linear system with this complex response to each line makes of it, at rest 0."""
+        """Output of a linear system with this complex response to each line, 0 at rest."""
         angles = 2 * np.pi * np.outer(TIMES, self.frequencies) + self.phases
         summed: Array = np.imag(np.exp(1j * angles) @ (self.amplitudes * response))
         return summed
@@ -302,8 +302,8 @@ def _position_drive(
 
 
 def _single(rng: Rng, load: float, stiffness: float) -> dict[str, Any]:
-    """A joint with one motor, all but its spring; the link is a rod. Its axis is horizontal if the
-    motor can lift the link, in half of the cases."""
+    """A joint with one motor, all but its spring; the link is a rod. In half of the cases the axis
+    is horizontal, if the motor can lift the link."""
     motor = _motor(rng, load)
     length = _even(rng, LENGTHS)
     mass = 3 * load / length**2
@@ -379,7 +379,8 @@ def _loads(links: tuple[Link, Link]) -> tuple[float, float]:
 
 
 def _gravity_torques(links: tuple[Link, Link], q_1: Array, q_2: Array) -> tuple[Array, Array]:
-    """What holds the arm at these angles, the second one against the first link [N.m]."""
+    """Torques that hold the arm at these angles; the second angle is relative to the first link
+    [N.m]."""
     upper, lower = links
     elbow = G * lower.mass * lower.centre * np.sin(q_1 + q_2)
     at_shoulder = G * (upper.mass * upper.centre + lower.mass * upper.length) * np.sin(q_1)
@@ -387,8 +388,8 @@ def _gravity_torques(links: tuple[Link, Link], q_1: Array, q_2: Array) -> tuple[
 
 
 def _arm(rng: Rng) -> Joint:
-    """An arm with two flexible joints; which one is in the log is drawn. Its floor is where the tip
-    is asked to be under it for some of the time, but not at the beginning."""
+    """An arm with two flexible joints; which one is in the log is drawn. The reference of the tip
+    is below the floor for some of the time, but not at the beginning."""
     links = _links(rng)
     loads = _loads(links)
     quarter = np.full(1, math.pi / 2)

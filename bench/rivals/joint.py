@@ -1,4 +1,4 @@
-"""What a joint is made of. `draw.py` draws the values, `simulation.py` builds what they say."""
+"""The parts of a joint. `draw.py` draws the values, `simulation.py` builds the joints."""
 
 import math
 from collections.abc import Mapping
@@ -40,7 +40,7 @@ class Friction:
 
     @property
     def at_rest(self) -> float:
-        """What resists at rest without load [N.m]."""
+        """Friction at rest without load [N.m]."""
         return self.K_c + self.K_cs
 
     def budget(self, v: float, tau_m: float, tau_e: float) -> float:
@@ -82,9 +82,9 @@ class Spring:
 class Tendons:
     """Two tendons from a lever on the motor's flange to a slider on the link, mirror images.
 
-    Each begins on the flange at the radius `lever`, at the angle +-`spread` from the link, passes
-    an eyelet on the link at the radius `eyelet`, and ends on the slider. When the slider moves out
-    by x, both get longer by x: the tension rises, and with it the stiffness of the joint.
+    Each tendon begins on the flange at the radius `lever`, at the angle +-`spread` from the link.
+    It passes an eyelet on the link at the radius `eyelet`, and ends on the slider. When the slider
+    moves out by x, both get longer by x: the tension rises, and with it the stiffness of the joint.
     """
 
     lever: float  # [m]
@@ -97,7 +97,7 @@ class Tendons:
     damping: float  # of the joint [N.m.s/rad]
 
     def length(self, alpha: float) -> float:
-        """From lever to eyelet when the angle between them is alpha [m]."""
+        """Distance from lever to eyelet at the angle alpha between them [m]."""
         a, r = self.lever, self.eyelet
         return math.sqrt(a * a + r * r - 2 * a * r * math.cos(alpha))
 
@@ -165,7 +165,7 @@ class Joint:
     drives: tuple[Drive, ...]
     instruments: tuple[Instruments, ...]
     sheet: Mapping[str, float]
-    """How wrong the owner's data are: factors to true values, by start values of the estimator."""
+    """Errors of the owner's data: factors to true values, by start values of the estimator."""
     gravity: float  # 0 where the axis is vertical [m/s2]
     springs: tuple[Spring, ...] = ()  # one a motor, or none beside tendons
     tendons: Tendons | None = None

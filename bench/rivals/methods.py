@@ -1,8 +1,8 @@
 """The methods that are compared, by name: those of this package, and least squares.
 
-All share the spring: its torque is a linear combination of given functions, the odd cubic
-polynomial in the deformation, because an owner does not know whether a spring hardens. Where the
-stiffness is variable, its coefficients are quadratic in the position of the stiffness motor.
+All methods model the spring as an odd cubic polynomial in the deformation, because an owner does
+not know whether a spring hardens. If the stiffness is variable, the coefficients are quadratic in
+the position of the stiffness motor.
 """
 
 import time
@@ -21,7 +21,7 @@ stiffness, as FilteredRegression is at most."""
 P_0 = 1e20
 """Initial covariance of Paper2011, as in the paper."""
 SAMPLE = 1e7
-"""What a sample at the range of the deformation counts there, the start being 1."""
+"""Weight of a sample at the range of the deformation, relative to the start."""
 ORDER = 4
 """Of the Butterworth filter."""
 DYNAMICS = 0.99
@@ -61,8 +61,8 @@ def _spring(log: JointLog, phi: Array) -> tuple[Array, Array]:
 def _filtered_regression(log: JointLog) -> Estimate:
     """On line: the estimate at each sample is from those up to it.
 
-    Parameters are as docs/filtered-regression.md advises: what the data sheet says becomes ranges,
-    priors and noise, and all else keeps its start value.
+    Parameters are as docs/filtered-regression.md advises: ranges, priors and noise are from the
+    data sheet, and all others have start values.
     """
     known = {"prior.B": STD_B, "prior.D_theta": STD_D, "prior.torque_gain": STD_GAIN}
     return _on_line(log, {"method": "FilteredRegression", "range.setPoint": _travel(log), **known})
@@ -86,7 +86,7 @@ def _paper2011(log: JointLog) -> Estimate:
 
 
 def _on_line(log: JointLog, start: dict[str, Value]) -> Estimate:
-    """What the estimator of this package says. `start` has the parameters of the method."""
+    """Results of the estimator of this package. `start` has the parameters of the method."""
     of_log = {"samplePeriod": log.sample_period, "rls.n": N, "rls.m": _m(log)}
     set_point = {"setPoint.offset": 0.0, "setPoint.scale": 1.0}
     estimator = sigmahat.Estimator(
@@ -110,8 +110,8 @@ def _least_squares(log: JointLog) -> Estimate:
     it and the information. The data sheet's inertia and viscous friction take part as two more rows
     with their own standard deviations, as a priori values do in M. Gautier and G. Venture,
     "Identification of standard dynamic parameters of robots with positive definite inertia matrix",
-    Proc. IEEE/RSJ IROS 2013. What is known of the gain of the torque is added to the standard
-    deviation, as the stiffness is proportional to it.
+    Proc. IEEE/RSJ IROS 2013. The uncertainty of the torque gain is added to the standard deviation,
+    because the stiffness is proportional to the gain.
 
     Filters follow Gautier, and A. Janot, P.-O. Vandanjon, M. Gautier, "A generic instrumental
     variable approach for industrial robot identification", IEEE Trans. Control Systems Technology

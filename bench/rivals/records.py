@@ -1,4 +1,4 @@
-"""What the joints hand to the methods, and what the methods return."""
+"""Data that the joints give to the methods, and results of the methods."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-# Relative standard deviations of the data sheets, as drawn, and as the methods are given them.
+# Relative standard deviations of the data sheets, as drawn, and as given to the methods.
 STD_B = 0.05
 STD_D = 0.2
 STD_GAIN = 0.015  # of the measured torque, which no log shows
@@ -28,7 +28,7 @@ class JointLog:
     tau_e: Array  # true torque of the spring, which acts on the motor [N.m]
     stiffness: Array  # true slope d tau_e / d phi, phi = q - theta [N.m/rad]
     known: Mapping[str, float]
-    """What the owner knows, from a data sheet that is wrong: start values of the estimator."""
+    """Start values of the estimator from the data sheet of the owner, which has errors."""
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,6 @@
 """Runs all methods on all joints, writes results and tables: python -m rivals.run --help.
 
-Needs the folders bench/ and harness/ on the path; cmake --workflow --preset rivals sees to it.
+Needs the folders bench/ and harness/ on the path, as in cmake --workflow --preset rivals.
 """
 
 import argparse

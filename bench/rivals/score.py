@@ -1,4 +1,4 @@
-"""How right an estimate of a log and its interval are, and the table of all results."""
+"""Scores of an estimate of a log and its interval, and the table of all results."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -32,9 +32,8 @@ did not."""
 def score(log: JointLog, estimate: Estimate) -> dict[str, float]:
     """The score of an estimate [%]: of the true stiffness, or of the instants after SETTLED.
 
-    Root mean square of the error; mean width of the intervals, share of instants whose interval
-    holds the truth and mean interval score, nan without intervals; share of instants that are
-    confident, and confident with an error above WRONG.
+    RMS of the error; mean width, coverage and mean score of the intervals, nan without intervals;
+    share of instants that are confident, and confident with an error above WRONG.
 
     Instants at which the true stiffness is not positive are left out: the spring is not engaged.
     Raises ValueError if none is left, or if the estimate is not finite at one of them.

@@ -3,8 +3,8 @@
 Motor i is the hinge theta_i, with an actuator; its spring is on the hinge phi_i of the body behind
 it, so that q = theta + phi. Armature, damping, dry friction (a constraint, whose limit is set at
 every step), springs, tendons, contact and integration are MuJoCo's. The tendons are spatial: MuJoCo
-finds their lengths and lever arms, so their torque is no formula of ours. They pull, and do not
-push; `joint.Tendons` says how they run.
+finds their lengths and lever arms, so their torque is no formula of ours. Tendons pull, and do not
+push; `joint.Tendons` describes their paths.
 """
 
 import math
@@ -20,8 +20,8 @@ from rivals.records import Array, JointLog
 from sigmahat.files.templates import environment
 
 STEP = 1e-4  # of the physics [s]
-VELOCITY_LAG = 5e-3  # of the low pass behind the difference of the encoder [s]
-INNER_DELAY = 2e-4  # from command to torque where the log has measured torque [s]
+VELOCITY_LAG = 5e-3  # time constant of the low pass of the encoder's difference [s]
+INNER_DELAY = 2e-4  # delay from command to torque if the log has measured torque [s]
 DIFFERENCE = 1e-6  # of phi, for the slope of the torque [rad]
 FLANGE = 0.002
 """Share of a motor's inertia that is a body behind its gear, the rest is armature. An engine needs
@@ -77,7 +77,7 @@ def log(kind: str, seed: int, run: Run, joint: Joint, rng: np.random.Generator) 
 
 
 def _rounded(angle: Array, counts: int) -> Array:
-    """What an encoder with this number of counts a turn reads [rad]; it counts on past a turn."""
+    """Angle of an encoder with this number of counts a turn [rad]; it counts on past a turn."""
     count = 2 * math.pi / counts
     read: Array = np.round(angle / count) * count
     return read
@@ -106,7 +106,7 @@ def run(joint: Joint) -> Run:
 
 
 class _Delay:
-    """Gives what it was given `seconds` ago, to the nearest step; zero before that."""
+    """Delays a signal by `seconds`, to the nearest step; the signal is zero at first."""
 
     def __init__(self, seconds: float) -> None:
         length = 1 + round(seconds / STEP)
@@ -215,7 +215,7 @@ class _Physics:
         }
 
     def _slope(self, dof: int) -> float:
-        """Of the torque on the motor, by central differences of phi in the model itself."""
+        """Slope of the torque on the motor, by central differences of phi in the model itself."""
         probe, phi = self._probe, float(self._probe.qpos[dof])
         torque = []
         for side in (1, -1):

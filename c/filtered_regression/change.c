@@ -2,11 +2,11 @@
  *
  *     0  the joint is as before: the prior and all blocks
  *     1  the spring has changed since t: the same at t, but of its columns, which are the first ones, only the
- *        prior is known. What the data say about motor and friction is in the rows behind.
- *     2  friction has changed: all blocks, but friction has changed by about the deviations of its priors
+ *        prior is known. The rows behind contain what the data show about motor and friction.
+ *     2  friction has changed: all blocks, after a change of friction by about the deviations of its priors
  *
- * Hypothesis 2 begins when there is evidence against hypothesis 0. It uses the blocks in which friction drifts. If
- * nothing has changed, these blocks become the blocks of hypothesis 0 again.
+ * Hypothesis 2 begins when there is evidence against hypothesis 0. Hypothesis 2 uses the blocks in which friction
+ * drifts. If nothing has changed, these blocks become the blocks of hypothesis 0 again.
  */
 #include "constants.h"
 #include "regression.h"

@@ -15,8 +15,8 @@
  * each multiplied by the std deviation of its coefficient, so that all coefficients have the prior N(0, 1).
  * Where the torque of the spring is measured or modelled, y is that torque, and the columns of the motor are 0.
  *
- * To add a kind of column: its row in sh_column_kinds, its line in list_columns, and its signal in signal_of or
- * its entry in entry_of.
+ * To add a kind of column, add a row to sh_column_kinds, a line to list_columns, and a signal to signal_of or an
+ * entry to entry_of.
  */
 #include <stddef.h>
 #include <string.h>
@@ -59,7 +59,7 @@ enum { ONE, TAU_E, K_0, TAU_C, IF_DRY, IF_CURVE };
 #define PRIOR(member) (int)offsetof(sh_parameters, prior.member)
 #define POWER (SH_IS_CURVE | SH_IS_POWER)
 
-/* The columns before DAMPING have their own filters, whose signals are in signal_of. The entries of the others are in
+/* The columns before DAMPING have their own filters, with signals in signal_of. The other columns have entries in
  * entry_of.
  */
 const sh_column_kind sh_column_kinds[SH_COLUMN_KINDS] = {
@@ -134,14 +134,14 @@ int sh_column_is_distinct(const sh_regression_state *state, const sh_parameters 
     return is_knee(column) || column->place <= SH_LOOKS_LIKE_SPRING * covered / p->range.phi;
 }
 
-/* ---- which columns there are ------------------------------------------------------------- */
+/* ---- the list of columns ----------------------------------------------------------------- */
 
 int sh_power_of_phi(int symmetric, int i)
 {
     return symmetric ? 2 * i + 1 : i;
 }
 
-/* What the coefficient of l^j x^e / e is multiplied by to get that of (setPoint - center)^j phi^e. */
+/* Factor from the coefficient of l^j x^e / e to the coefficient of (setPoint - center)^j phi^e. */
 static sh_real unit_of_power(const sh_parameters *p, int i, int j)
 {
     const int e = sh_power_of_phi(p->rls.symmetric, i);
@@ -487,7 +487,7 @@ static sh_real encoder_error(const sh_regression_state *state, const sh_paramete
     return state->stiffness_known ? sh_limited(error, SH_LARGEST_ENCODER_ERROR) : 0;
 }
 
-/* Entry of a column without a filter of its own. It still lacks the factor `prior`. */
+/* Entry of a column without a filter of its own. The factor `prior` is still missing. */
 static sh_real entry_of(const sh_regression_state *state, const sh_parameters *p,
                         const sh_column *column)
 {

@@ -25,7 +25,7 @@
 /* Half widths over range.phi [1]: each four times the one before, so that three come near any width. */
 #define SH_DEAD_ZONES {(sh_real)0.01, (sh_real)0.04, (sh_real)0.16}
 #define SH_HYSTERESES {(sh_real)0.005, (sh_real)0.02, (sh_real)0.08}
-/* Share of the covered range from which such a width looks like the spring [1]: with half, twice the error. */
+/* Share of the covered range from which such a width looks like the spring [1]: half of it doubles the error. */
 #define SH_LOOKS_LIKE_SPRING ((sh_real)0.25)
 /* Stiffness within the widest dead zone over the stiffness outside [1]. Below this ratio the zone is a gap and no part
  * of sigma, else it is a knee. A gap leaves 0, a knee of harmonic drives half.
@@ -54,7 +54,7 @@
 #define SH_AT_REST ((sh_real)5)
 
 /* Errors of phi that repeat with the position, over the once-per-turn error of the link encoder [1]: harmonics, gear.
- * With 0.025 stiff joints under a free inertia are confident and wrong.
+ * With 0.025, stiff joints under a free inertia are confident and wrong.
  */
 #define SH_HARMONICS ((sh_real)0.035)
 /* Largest change by such errors, in std deviations [1]. */
@@ -95,7 +95,7 @@
 #define SH_UNJUDGED_BLOCKS ((sh_real)10)
 /* Number of blocks that count [1]: 100 s, so that a misfit that begins after hours is noticed soon. */
 #define SH_MOST_BLOCKS ((sh_real)2000)
-/* Std deviations beyond which a sum of squares is no chance [1]. */
+/* Std deviations beyond which a sum of squares is not due to chance [1]. */
 #define SH_CHANCE ((sh_real)3)
 /* Number of blocks up to which a misfit averages out; beyond it repeats with the motion [1]. */
 #define SH_REPEATS ((sh_real)5)
@@ -161,8 +161,8 @@
  */
 #define SH_REFIT_PAUSE ((sh_real)0.0101)
 /* Duration of a row for each step that a refit makes in a step of the row [s], and most of these steps [1]. There is
- * one in rows below 13 ms, and four from 26 ms on. With one there, too, a wrong choice of columns would last for 0.8 s
- * at 250 Hz. Rows of several samples have more samples than steps.
+ * one step in rows below 13 ms, and four from 26 ms on. With one there, too, a wrong choice of columns would last for
+ * 0.8 s at 250 Hz. Rows of several samples have more samples than steps.
  */
 #define SH_TIME_OF_STEP ((sh_real)0.0065)
 #define SH_MOST_STEPS 4
@@ -186,15 +186,15 @@
 
 /* ---- what is reported, filtered_regression.c --------------------------------------------- */
 
-/* Not confident where x = |phi| / range.phi is above the second number and x^e above the first [1]. The highest power
- * is e.
+/* The estimate is not confident if x = |phi| / range.phi is above the second number and x^e above the first [1]. The
+ * highest power is e.
  */
 #define SH_LARGEST_POWER ((sh_real)32)
 #define SH_LEAST_LIMIT ((sh_real)2)
 /* Std deviations of its prior beyond which a corrected motor parameter is doubted [1]. */
 #define SH_OUTSIDE_PRIOR ((sh_real)3)
-/* Std deviations below 0 from which viscous friction is doubted [1]: encoders that are read at different times do
- * that. Of 40 simulated logs, all eight with a late encoder had a friction below 0, and no other one.
+/* Std deviations below 0 from which viscous friction is doubted [1]: encoders are then read at different times. Of 40
+ * simulated logs, all eight with a late encoder had a friction below 0, and no other one.
  */
 #define SH_BELOW_ZERO ((sh_real)1)
 

@@ -1,4 +1,4 @@
-/* Method FilteredRegression: one tick, and what its estimate means. */
+/* Method FilteredRegression: one tick, and the outputs of its estimate. */
 #include <string.h>
 
 #include "constants.h"
@@ -158,9 +158,9 @@ static void read_coefficients(const sh_regression_state *state, const sh_paramet
     }
 }
 
-/* Why the estimate is not confident. The misfit widens sigma_std, and has its own limit for few blocks only: then the
- * columns that may explain it have not all been tried. With N blocks, c' P c counts 1 + 10/N times, because few blocks
- * hardly show whether the model holds.
+/* The reason why the estimate is not confident. The misfit widens sigma_std, and has its own limit for few blocks
+ * only: then the columns that may explain it have not all been tried. With N blocks, c' P c counts 1 + 10/N times,
+ * because few blocks hardly show whether the model holds.
  */
 static int doubt_of(const sh_regression_state *state, const sh_parameters *p,
                     const sh_estimate *estimate)
@@ -219,8 +219,8 @@ static void report_coefficients(sh_regression_state *state, const sh_parameters 
     estimate->hysteresis_hat = sum[SH_COLUMN_HYSTERESIS];
 }
 
-/* Sets all outputs, and what the next row depends on. Returns 0, and sets none, if a number overflows. The variances
- * at a point are as much work as a row, so they are computed once for a row (detail 16).
+/* Sets all outputs, and what the next row depends on. If a number overflows, returns 0 and sets no output. The
+ * variances at a point are as much work as a row, so they are computed once for a row (detail 16).
  *
  * settled  whether the filters have settled
  * news     SH_NEW_*
@@ -423,7 +423,8 @@ static int steps_of_refit(const sh_signals *signals)
 }
 
 /* Step 0 to 2 behind the row. A block that the row fills is taken in these steps, and in step 0 behind the next row.
- * Else a refit goes on, by more steps if rows are long, so that a refit takes as much time. Returns SH_NEW_*.
+ * Else a refit goes on, with more steps if rows are long, so that its time does not depend on the rows. Returns
+ * SH_NEW_*.
  */
 static int advance_block(sh_regression_state *state, const sh_parameters *p, int step)
 {
@@ -444,8 +445,8 @@ static int advance_block(sh_regression_state *state, const sh_parameters *p, int
     return news;
 }
 
-/* What else a row changes: step 0 to 6. A step changes at most one triangular matrix, but up to four where a refit goes
- * on in long rows. Where a change is adopted, a step also copies matrices. Returns SH_NEW_*.
+/* Further changes by a row, in steps 0 to 6. A step changes at most one triangular matrix, but up to four where a
+ * refit goes on in long rows. A step also copies matrices when a change is adopted. Returns SH_NEW_*.
  */
 static int take_step(sh_regression_state *state, const sh_parameters *p, int step)
 {
@@ -500,7 +501,7 @@ static void wait_until_settled(sh_regression_state *state)
     }
 }
 
-/* Forgets what the last row depended on, so that the next row is not too large for the same reason. Returns 0. */
+/* Resets the quantities that made the last row too large, so that they do not spoil the next row. Returns 0. */
 static int refuse(sh_regression_state *state, const sh_history *before)
 {
     state->signals.begun = 0; /* the filters start again, so their old state does not matter */
@@ -545,7 +546,7 @@ static int tick_filtered_regression(sh_estimator *estimator, const sh_parameters
             return refuse(state, &before);
         }
     }
-    /* At each tick as long as there are no rows, also behind a gap. */
+    /* This is done at each tick as long as there are no rows, also after a gap. */
     news = complete || (settled && state->row.w > 0) ? 0 : SH_NEW_VARIANCES;
     if (!complete || state->signals.decimation == 1) {
         news |= take_steps(state, p); /* 6. Estimate, data, misfit, choice of columns. */

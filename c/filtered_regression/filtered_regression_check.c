@@ -1,5 +1,5 @@
-/* Method FilteredRegression: which states can be its own. A condition about one member is an `if`, so that an
- * analyser knows the member behind the condition. Numbers that only have a range are in a table.
+/* Method FilteredRegression: checks whether a state can be its own. A condition about one member is an `if`, so that
+ * an analyser knows the member behind the condition. Numbers that only have a range are in a table.
  */
 #include <string.h>
 

@@ -5,7 +5,7 @@
 #include "constants.h"
 #include "pair.h"
 
-/* Where row i begins in U. */
+/* Place at which row i begins in U. */
 static int row_offset(int size, int i)
 {
     return i * (size - 1 + SH_RIGHT_SIDES) - i * (i - 1) / 2;
@@ -71,13 +71,13 @@ void sh_information_restart(sh_information *a, int count, sh_real precision)
     }
 }
 
-/* What is left of a sample: the variance v of its error, and one over it. It waits for one addition a row alone. */
+/* The rest of a sample: the variance v of its error, and 1 / v. With both, each row waits for only one addition. */
 typedef struct {
     sh_real variance, weight;
 } sample_left;
 
-/* Takes what the rows before left of a sample, with the entry x, into an entry of D. Returns the gain for the row of U.
- * If nothing changes, x becomes 0.
+/* Adds the rest of a sample after the rows before, with the entry x, to an entry of D. Returns the gain for the row
+ * of U. If nothing changes, x becomes 0.
  *
  *     D_i += x_i^2 / v ,   v += x_i^2 / D_i before ,   gain = x_i / (D_i before v) .
  */

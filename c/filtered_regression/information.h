@@ -21,8 +21,8 @@ void sh_information_start(sh_information *a, int size, sh_real precision);
 /* Copies only the rows that are used. */
 void sh_information_copy(sh_information *to, const sh_information *from);
 
-/* Starts again with the first parameters: they get the estimate 0 and the precision. What the samples say about
- * the others, if the first ones are not known, stays.
+/* Starts again with the first parameters: they get the estimate 0 and the precision. The information about the other
+ * parameters, with the first ones unknown, stays.
  *
  * count  number of first parameters, >= 0; all of them if it is larger than size
  */
@@ -32,7 +32,7 @@ void sh_information_restart(sh_information *a, int count, sh_real precision);
  *
  * x  [size: size + SH_RIGHT_SIDES] regressor, then the right-hand sides. It is overwritten: afterwards the
  *    last entry is the prediction error of y before the sample
- * w  weight. If it is negative, a sample of this weight is removed; U' D U must stay positive
+ * w  weight. If w is negative, a sample of this weight is removed; U' D U must stay positive
  *    definite
  *
  * A row stays as it is if its entry of D would fall below 1e-300, or 1e-37 in single precision. The member `squares`
@@ -42,10 +42,10 @@ void sh_information_restart(sh_information *a, int count, sh_real precision);
  */
 sh_real sh_information_take(sh_information *a, sh_real *x, sh_real w);
 
-/* The rows first..end - 1 take what the rows before left of a sample. With all rows, one part after the other, this is
- * sh_information_take. Numbers behind the last row count as the number of rows.
+/* Adds the rest of a sample after the rows before to the rows first..end - 1. For all rows, one part after the other,
+ * this is sh_information_take. Numbers behind the last row count as the number of rows.
  *
- * Returns the weight of what is left in x[end..] for the other rows.
+ * Returns the weight of the rest in x[end..] for the other rows.
  */
 sh_real sh_information_take_rows(sh_information *a, int first, int end, sh_real *x, sh_real w);
 

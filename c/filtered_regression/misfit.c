@@ -1,5 +1,5 @@
-/* Misfit (point 7): what no column explains. Blocks of samples show it, and data that contradict the model are
- * forgotten.
+/* Misfit (point 7): errors that no column explains. Blocks of samples show the misfit, and data that contradict the
+ * model are forgotten.
  */
 #include <string.h>
 
@@ -85,8 +85,8 @@ static sh_real take_block(sh_information *a, const sh_real *mean, sh_real w, int
 }
 
 /* Mean row sum h w x / sum h w. The hypothesis of a change takes this row first, as it may begin anew before this
- * block. The hypothesis does not take its first block: if this block is evidence, the spring changes in it. If not, the
- * hypothesis begins anew behind the block.
+ * block. The hypothesis does not take its first block: if this block is evidence, the spring changes in it. If this
+ * block is no evidence, the hypothesis begins anew after the block.
  */
 void sh_blocks_end(sh_regression_state *state, const sh_parameters *p, int step)
 {
@@ -266,9 +266,9 @@ void sh_friction_drift(sh_regression_state *state, sh_real time, int step)
 
 /* ---- forgetting, details 9 and 11 -------------------------------------------------------- */
 
-/* Forgets data of so much time of motion [s]. Data fade faster while the misfit is over three times its usual value,
- * but not faster than the recent blocks. If these blocks agree by themselves, the joint has changed: then data fade at
- * least five times as fast.
+/* Forgets data of so much time of motion [s]. Data are forgotten faster while the misfit is over three times its
+ * usual value, but not faster than the recent blocks. If these blocks agree by themselves, the joint has changed:
+ * then data are forgotten at least five times as fast.
  */
 static void forget_data(sh_regression_state *state, const sh_parameters *p, sh_real moving)
 {
@@ -310,7 +310,7 @@ static void let_curve_drift(sh_regression_state *state, const sh_parameters *p, 
     }
 }
 
-/* Time counts as far as blocks do: nothing is forgotten at rest. With a short memory, the number of blocks
+/* Only the time of blocks counts: nothing is forgotten at rest. With a short memory, the number of blocks
  * must grow first.
  */
 void sh_forget(sh_regression_state *state, const sh_parameters *p, sh_real time)

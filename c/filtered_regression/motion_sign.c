@@ -1,5 +1,5 @@
-/* Direction in which a motor turns, from its encoder: Coulomb friction acts against it (point 3, detail 3). The
- * sign of a filtered velocity would be late.
+/* Direction in which a motor turns, from its encoder: Coulomb friction acts against this direction (point 3, detail
+ * 3). The sign of a filtered velocity would be late.
  */
 #include "real_math.h"
 #include "regression.h"

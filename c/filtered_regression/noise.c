@@ -1,4 +1,4 @@
-/* The variance of a row, and what of it is only noise. */
+/* The variance of a row, and the part of the row that is only noise. */
 #include "constants.h"
 #include "regression.h"
 #include "state_variable_filter.h"
@@ -49,7 +49,7 @@ sh_real sh_noise_watch_theta(sh_regression_state *state, const sh_parameters *p)
 /* K R = (sigma^2 (count^2 + count_q^2)/12 + (gamma s_tau)^2) (1 + 0.3 (X - 1))
  *       + 16/(3 w T) gamma^2 (tau_C^2 + P_CC) u_f^2
  *
- * White noise enters as it is before the filter (point 1), as the mean of K samples. A wrong sign of friction in one
+ * White noise counts as before the filter (point 1), as the mean of K samples. A wrong sign of friction in one
  * sample leaves the filter as its impulse response h, in many samples. So the variance of friction is divided by T
  * integral of h^2 = 3/16 w T.
  *

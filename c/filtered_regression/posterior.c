@@ -1,4 +1,4 @@
-/* What is known of the coefficients: their prior, and the data weighted by the misfit. The noise in columns is
+/* Posterior of the coefficients: their prior, and the data weighted by the misfit. The noise in columns is
  * removed from the information (details 7 and 14).
  */
 #include <string.h>

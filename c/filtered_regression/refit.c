@@ -1,15 +1,15 @@
 /* Refits: how the misfit, and the choice of columns, act on past samples in bounded time (detail 6). A row of
  * the data with its weight is a sample for another triangle: so a new posterior is computed beside the present
  * one. A step takes a row of the data, beginning with the last, or two while the rows are short. A new row passes the
- * rows of the data from the first to the last. What the rows that have not been read leave of the new row is for the
- * new posterior, too. Every second refit is a trial of a group of columns, and its estimate is not used.
+ * rows of the data from the first to the last. The new posterior also takes the rest of the new row after the rows
+ * that have not been read. Every second refit is a trial of a group of columns, and its estimate is not used.
  */
 #include <string.h>
 
 #include "constants.h"
 #include "regression.h"
 
-/* Where column i stands; -1 if it is not used. Columns of the spring stand behind others: their variances then
+/* Place of column i; -1 if it is not used. Columns of the spring stand behind others: their variances then
  * need few rows of U. Behind them stand columns of the motor, whose information is changed or whose variance is
  * used. At the end stands the group that is tried.
  */
@@ -210,7 +210,7 @@ void sh_refit_take(sh_regression_state *state)
     }
 }
 
-/* What a refit does behind its rows: step 0..15. Friction drifts, and data are forgotten, before a refit that is no
+/* Steps 0..15 of a refit after its rows. Friction drifts, and data are forgotten, before a refit that is no
  * trial. Returns SH_NEW_*.
  */
 static int end_step(sh_regression_state *state, const sh_parameters *p, int step)
@@ -253,7 +253,7 @@ static int end_step(sh_regression_state *state, const sh_parameters *p, int step
     return news;
 }
 
-/* What a refit needs is spread over ticks, too. */
+/* The work before and after a refit is also spread over ticks. */
 int sh_refit_advance(sh_regression_state *state, const sh_parameters *p)
 {
     sh_refit *refit = &state->refit;

@@ -1,4 +1,4 @@
-/* What the files of FilteredRegression give each other. "Point" and "detail" with a number are those of
+/* Interfaces between the files of FilteredRegression. Numbers of a "point" or "detail" refer to
  * docs/filtered-regression.md, which has the derivations.
  */
 #ifndef SH_REGRESSION_H
@@ -7,30 +7,30 @@
 #include "information.h"
 
 enum {
-    SH_ROW_STEPS = 7,   /* in which a row changes the estimate, and all that depends on it */
-    SH_REFIT_STEPS = 16 /* of a refit behind its rows, before it pauses */
+    SH_ROW_STEPS = 7,   /* number of steps in which a row changes the state */
+    SH_REFIT_STEPS = 16 /* number of steps of a refit after its rows */
 };
 
 /* What a step changes. The values may be added up. */
 enum {
     SH_NEW_COEFFICIENTS = 1,
-    SH_NEW_VARIANCES = 2 /* to be computed at the point of this tick */
+    SH_NEW_VARIANCES = 2 /* variances at the point of this tick */
 };
 
-/* Where the joint is, and the signals of the columns there, before the filter. */
+/* Positions of the joint, and the signals of the columns there, before the filter. */
 typedef struct {
     sh_real theta, q, phi;      /* positions and deformation [rad] */
     sh_real x;                  /* phi / range.phi [1] */
     sh_real power[SH_MAX_N];    /* x^e / e, e of number i [1] */
-    sh_real slope[SH_MAX_N];    /* and its derivative by phi [1/rad] */
+    sh_real slope[SH_MAX_N];    /* derivative of the power by phi [1/rad] */
     sh_real l[SH_MAX_M];        /* ((set-point - its center) / range.setPoint)^j [1] */
     sh_real phi_set;            /* phi l^j with the highest j [rad] */
     sh_real tau_nominal;        /* torque of the curve rls.eta_0 [N.m] */
-    sh_real sigma_nominal;      /* and its stiffness [N.m/rad] */
+    sh_real sigma_nominal;      /* stiffness of the curve rls.eta_0 [N.m/rad] */
     const sh_real *stop;        /* [size: SH_WIDTHS] stop operators of hysteresis [rad] */
     sh_real F[SH_MAX_COLUMNS];  /* signals of the first columns, as far as they have one */
-    sh_real dF[SH_MAX_COLUMNS]; /* and their slopes over phi, of the curve of the spring alone */
-    sh_filtered filtered;       /* at a tick: signals behind the filters */
+    sh_real dF[SH_MAX_COLUMNS]; /* slopes of F over phi, of the curve of the spring alone */
+    sh_filtered filtered;       /* signals after the filters, only at a tick */
 } sh_joint_point;
 
 /* Variance of a row, whose inverse is its weight. */
@@ -38,7 +38,7 @@ typedef struct {
     sh_real R;        /* [(N.m)2] */
     sh_real lasting;  /* factor in R by errors that last, >= 1 */
     sh_real torque;   /* variance of the filtered y by noise of the torque [(N.m)2] */
-    sh_real friction; /* and by friction whose sign is unknown [(N.m)2] */
+    sh_real friction; /* variance by friction of unknown sign [(N.m)2] */
     sh_real share; /* lambda of detail 14: torque over the whole variance of the filtered y, 0..1 */
 } sh_row_noise;
 
@@ -79,7 +79,7 @@ enum {
 
 typedef struct {
     int prior;   /* offset of its std deviation in sh_parameters */
-    int unit;    /* in which that is given, see columns.c */
+    int unit;    /* unit of this std deviation, see columns.c */
     int group;   /* 0: always used */
     unsigned is; /* SH_IS_*, added up */
 } sh_column_kind;
@@ -107,7 +107,7 @@ int sh_columns_count(const sh_parameters *p);
 /* The columns for these parameters; there must not be more than SH_MAX_COLUMNS. */
 void sh_columns_start(sh_columns *columns, const sh_parameters *p);
 
-/* Where the first column of a kind is; -1 if there is none. */
+/* Place of the first column of a kind; -1 if there is none. */
 int sh_columns_place(const sh_columns *columns, int kind);
 
 /* Whether column i can be told from the spring after the deformations so far. */
@@ -161,7 +161,7 @@ void sh_signals_start(sh_signals *signals, sh_history *history, const sh_paramet
 /* Lets the estimate wait until the filters have settled. */
 void sh_signals_unsettle(sh_signals *signals, sh_history *history);
 
-/* Takes a sample into the history and into all filters. Sets where the joint is, also behind the filters. */
+/* Takes a sample into the history and into all filters. Sets the positions of the joint, also after the filters. */
 void sh_signals_take(sh_regression_state *state, const sh_parameters *p, const sh_measurement *z,
                      sh_real set_point, sh_joint_point *at);
 
@@ -187,8 +187,8 @@ int sh_noise_contradicts_rest(sh_regression_state *state, const sh_parameters *p
 
 void sh_posterior_copy(sh_posterior *to, const sh_posterior *from);
 
-/* Takes a row x: all columns [size: size], then the right-hand sides. Its weight is w times the weight of the
- * posterior. Returns 1 / (1 + rho), where rho is the variance of the prediction over the variance of the row.
+/* Takes a row x: all columns [size: size], then the right-hand sides. The weight of the row is w times the weight of
+ * the posterior. Returns 1 / (1 + rho), where rho is the variance of the prediction over the variance of the row.
  */
 sh_real sh_posterior_take(sh_posterior *posterior, const sh_real *x, int size, sh_real w);
 
@@ -258,8 +258,8 @@ int sh_change_begins_anew(sh_regression_state *state, sh_real error);
 void sh_change_judge(sh_regression_state *state, const sh_parameters *p, sh_real before,
                      sh_real spring, sh_real friction);
 
-/* Step 0..2 behind a row in which no block is taken. Lets friction be another one, if this hypothesis has just begun.
- * Returns 0 if there is nothing to do.
+/* Step 0..2 behind a row in which no block is taken. Gives friction the variance of its prior, if this hypothesis has
+ * just begun. Returns 0 if there is nothing to do.
  */
 int sh_change_widens_friction(sh_regression_state *state, int step);
 
@@ -280,7 +280,7 @@ void sh_refit_begin(sh_regression_state *state, const sh_parameters *p);
 /* Takes the newest row into the data of all samples. */
 void sh_data_take(sh_regression_state *state);
 
-/* Takes what sh_data_take left of the newest row, if a refit is running. No row may be read in between. */
+/* Takes the rest of the newest row after sh_data_take, if a refit is running. No row may be read in between. */
 void sh_refit_take(sh_regression_state *state);
 
 /* Takes a row of the data of all samples, two where they are short, or does the next step at the end of a refit.

@@ -102,8 +102,8 @@ static void set_inputs(const sh_regression_state *state, const sh_parameters *p,
     x[SH_FILTER_LOAD] = -sh_fabs(load_of(state, at)) * motion->sign;
 }
 
-/* The first sample. The motor is assumed to be at rest, at any torque (detail 12). So theta starts at its value. The
- * signals of the equation start from zero, because the equation holds from now on.
+/* The first sample. The motor is assumed to be at rest, at any torque (detail 12). So theta starts at the present
+ * position. The signals of the equation start from zero, because the equation holds from now on.
  */
 static void begin_filters(sh_regression_state *state, const sh_parameters *p,
                           const sh_joint_point *at, sh_real torque)

@@ -2,8 +2,8 @@
 
 #include "constants.h"
 
-/* Far below the resolution of any signal. A filter at rest would decay to far smaller numbers, with which processors
- * compute slowly.
+/* This limit is far below the resolution of any signal. A filter at rest would decay to far smaller numbers, with
+ * which processors compute slowly.
  */
 static const sh_real SMALL = (sh_real)1e-30;
 
@@ -45,7 +45,7 @@ void sh_filters_hold(sh_filters *filters, int i, sh_real mean)
 }
 
 /* In the steady state of a ramp, the output of stage k is (k + 1) / (w T) samples behind the input. Deviations from
- * that decay as in the filter without input.
+ * the steady state decay as in the filter without input.
  */
 void sh_filters_step(sh_filters *restrict filters, const sh_filter_design *design, int first,
                      const sh_real *restrict x, int count)

@@ -2,8 +2,8 @@
  *
  *     H(s) = (w / (s + w))^3 ,  s H(s)  and  s^2 H(s) ,
  *
- * solved exactly for signals that are linear between samples. Of third order, so that little of the rounding of
- * an encoder passes s^2 H. (Young 1981, Automatica 17:23-39; Garnier and Wang 2008, chapter 1.)
+ * solved exactly for signals that are linear between samples. The filter is of third order, so that little of the
+ * rounding of an encoder passes s^2 H. (Young 1981, Automatica 17:23-39; Garnier and Wang 2008, chapter 1.)
  */
 #ifndef SH_STATE_VARIABLE_FILTER_H
 #define SH_STATE_VARIABLE_FILTER_H

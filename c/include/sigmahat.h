@@ -36,7 +36,7 @@ extern "C" {
 typedef SH_REAL sh_real;
 
 /* The methods of estimation, one line each: constant, number and name in the FMU, block of c/.
- * This is the only list of them: method.h says how one is added.
+ * This is the only list of the methods; method.h describes how to add one.
  *
  * Paper2011      the paper: Kalman filter (9)-(11), residual (6)-(8), least squares (25)-(27)
  * FilteredRegression  one regression for the torque and the errors of the motor data, from signals
@@ -49,7 +49,7 @@ typedef SH_REAL sh_real;
 #define SH_METHOD_CONSTANT(constant, number, name, block) constant = number,
 enum { SH_METHODS(SH_METHOD_CONSTANT) };
 
-/* What feeds the regression, section VI.B. */
+/* Source of the torque for the regression, section VI.B. */
 enum {
     SH_MODALITY_RESIDUAL = 1, /* gamma r_e of (8) */
     SH_MODALITY_SENSOR = 2,   /* a torque sensor */
@@ -82,7 +82,7 @@ enum {
     SH_RLS_CONSTANT_FACTOR = 3 /* constant a in (25) */
 };
 
-/* Why the estimate is not confident. If several reasons hold, it is the one that stands last. */
+/* Why the estimate is not confident. If there are several reasons, the last one of this list is given. */
 enum {
     SH_DOUBT_NONE = 1,           /* it is confident */
     SH_DOUBT_NO_CLAIM,           /* the method computes no uncertainty that contains all errors */
@@ -95,9 +95,9 @@ enum {
     SH_DOUBT_CHANGE /* stiffness or friction may have changed, the estimate does not follow yet */
 };
 
-/* Largest orders of the polynomials (18) and (19), in the deformation and in the set-point. They
- * determine the size of sh_estimator. The compiler can be given smaller ones, as plain numbers. They
- * must be the same for every file of the library, and every file that includes this header.
+/* Largest orders of the polynomials (18) and (19), in the deformation and in the set-point. These orders determine
+ * the size of sh_estimator. The compiler can be given smaller ones, as plain numbers. The sizes must be the same for
+ * every file of the library, and every file that includes this header.
  */
 #ifndef SH_MAX_N
 #define SH_MAX_N 8
@@ -315,7 +315,7 @@ typedef struct {
     const char *range; /* the allowed values: ">= 1e-15 and < 2 / samplePeriod" */
 } sh_violation;
 
-/* State between ticks. It contains no pointer: copy it by assignment. */
+/* State between ticks. The struct contains no pointer: copy it by assignment. */
 typedef struct sh_estimator sh_estimator;
 
 /* Sets the parameters of the AwAS, section VI.A, which are the start values of the FMU. The orders are
@@ -350,8 +350,8 @@ void sh_estimator_start(sh_estimator *estimator, const sh_parameters *p, sh_esti
  *
  * Returns 0, or 1 if the tick is skipped: a measurement is not finite or beyond
  * SH_LARGEST_MEASUREMENT, or the numbers overflow. A skipped tick is counted and sets estimate->valid
- * to 0. Nothing else of the estimate changes; nor of the state, unless the numbers overflow.
- * What happens at the first good sample after such a gap depends on the method:
+ * to 0. Nothing else changes in the estimate, and nothing in the state unless the numbers overflow.
+ * The first good sample after such a gap is treated by the method:
  *
  * SH_METHOD_PAPER2011 filters over the time that has passed. If the gap is shorter than 2 / K_I,
  * the residual integrates over it as over one long sample. After a longer gap the residual starts
@@ -360,7 +360,7 @@ void sh_estimator_start(sh_estimator *estimator, const sh_parameters *p, sh_esti
  *
  * SH_METHOD_FILTERED_REGRESSION starts its filters again and learns nothing for
  * 12 / w, where w is the corner frequency of its filters, at most regression.bandwidth.
- * It does the same after a change of the modality.
+ * This method does the same after a change of the modality.
  */
 int sh_estimator_tick(sh_estimator *estimator, const sh_parameters *p, const sh_measurement *z,
                       sh_estimate *estimate);
@@ -391,7 +391,7 @@ int sh_estimator_evaluate(const sh_estimator *estimator, const sh_parameters *p,
  */
 int sh_estimator_check(const sh_estimator *estimator, const sh_parameters *p);
 
-/* What sh_estimator contains, so that it can be a variable of yours. */
+/* Definition of sh_estimator, so that you can declare a variable of this type. */
 #include "sigmahat_state.h"
 
 #ifdef __cplusplus

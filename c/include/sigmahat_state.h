@@ -1,7 +1,7 @@
-/* What an estimator stores from one tick to the next: the struct of each block of c/.
+/* The state of an estimator from one tick to the next: a struct for each block of c/.
  *
  * Nothing here is for users, who include sigmahat.h: with every version these structs may change.
- * They are in a header that is installed because the caller provides the memory. Members named
+ * This header is installed, because the caller provides the memory for the structs. Members named
  * `work` have no meaning between two calls.
  */
 #ifndef SIGMAHAT_STATE_H
@@ -69,7 +69,7 @@ typedef struct {
 
 /* Method FilteredRegression, in the folder of this name. */
 
-/* What all filters of one corner frequency and sample period share. */
+/* Common data of all filters with one corner frequency and sample period. */
 typedef struct {
     sh_real w;       /* corner frequency [rad/s] */
     sh_real T;       /* sample period [s] */
@@ -80,7 +80,7 @@ typedef struct {
 
 /* Direction of motion of one motor. */
 typedef struct {
-    sh_real position;  /* at the last change of position [rad] */
+    sh_real position;  /* position after its last change [rad] */
     sh_real change;    /* last change of position [rad], 0 before the first */
     sh_real direction; /* sign at the last change, -1..1 */
     sh_real waiting;   /* samples since the last change */
@@ -128,9 +128,9 @@ typedef struct {
 typedef struct {
     int size;     /* number of columns */
     int spring;   /* the first ones, so many, make up the torque of the spring */
-    int knees;    /* from this one on, they may have a slope that changes at once */
+    int knees;    /* first column whose slope may change at once */
     int filtered; /* the first ones, so many, have a signal: the torque of the spring, or a filter */
-    int friction;    /* from this one on, to the one before inertia, they are friction */
+    int friction;    /* first column of friction; the last one is before inertia */
     int inertia;     /* the last one; the size if there is none */
     int has_nominal; /* 1: a curve rls.eta_0 is given */
     sh_column column[SH_MAX_COLUMNS];
@@ -181,7 +181,7 @@ typedef struct {
     sh_real theta_before[5]; /* the last positions, for differences [rad] */
 } sh_signals;
 
-/* What a gap in the samples does not end. A refused sample leaves it as it was. */
+/* Data that a gap in the samples does not reset. A refused sample does not change these data. */
 typedef struct {
     sh_real stop[SH_WIDTHS];       /* states of the stop operators of hysteresis [rad] */
     sh_real phi, phi_min, phi_max; /* deformation: last, least and largest [rad] */
@@ -196,10 +196,10 @@ typedef struct {
 /* Sums over the samples of the next row. */
 typedef struct {
     int samples;                    /* taken so far */
-    sh_real rough;                  /* of the noise of theta [rad2] */
-    sh_real moved;                  /* of the samples with which theta changed [1] */
+    sh_real rough;                  /* sum of the noise of theta [rad2] */
+    sh_real moved;                  /* number of samples with which theta changed [1] */
     sh_filtered filtered;           /* of the signals */
-    sh_real output[SH_MAX_COLUMNS]; /* of the filters of the columns */
+    sh_real output[SH_MAX_COLUMNS]; /* outputs of the filters of the columns */
 } sh_mean;
 
 /* The last row. The steps that take it are spread over the ticks until the next one. */
@@ -218,14 +218,14 @@ typedef struct {
  */
 typedef struct {
     sh_real information; /* [1] */
-    sh_real gain;        /* to the right-hand side SH_RIGHT_GAIN [1] */
+    sh_real gain;        /* part in the right-hand side SH_RIGHT_GAIN [1] */
 } sh_column_noise;
 
 /* Prior and data, which are weighted by the misfit, in the order of its own columns. */
 typedef struct {
     sh_information information;
     short column[SH_MAX_COLUMNS]; /* which column of the data each of its own is */
-    sh_real weight;               /* of the data, one over the variance factor of the misfit [1] */
+    sh_real weight;               /* weight of the data, 1 / variance factor of the misfit [1] */
     sh_real surplus;              /* information about b that is rounding, still contained [1] */
     sh_real removed;              /* removed so far [1] */
     sh_real spread;               /* variance of both, as it acts on the estimate of b [1] */
@@ -233,13 +233,13 @@ typedef struct {
 
 /* Means over blocks of samples, misfit.c. */
 typedef struct {
-    sh_information constant;     /* of the prior and blocks, parameters constant */
+    sh_information constant;     /* prior and blocks, parameters constant */
     sh_information drifting;     /* the same, friction may drift */
-    sh_information recent;       /* of the prior and the last blocks */
+    sh_information recent;       /* prior and the last blocks */
     sh_real recent_misfit;       /* their reduced chi-square, if it is beyond chance; else 0 */
     sh_real prior;               /* share of the prior that is left in the first two, 0..1 */
     sh_real count, recent_count; /* effective number of blocks [1] */
-    sh_real duration; /* of the blocks since the last refit but trials, as far as they count [s] */
+    sh_real duration; /* time of counted blocks since the last refit that was no trial [s] */
     sh_real length;   /* rows of a block */
     sh_real energy, energy_second; /* share of white noise that H, and s^2 H [1/s4], leave in a
                                       block */
@@ -255,17 +255,17 @@ typedef struct {
 
 /* Whether the spring or friction has changed, change.c. */
 typedef struct {
-    sh_information changed; /* of blocks, if the spring has changed since this hypothesis began */
+    sh_information changed; /* blocks under the hypothesis of another spring */
     int following;          /* 1: a change was detected, and the estimate does not contain it yet */
     sh_real blocks;         /* since the hypothesis began */
     sh_real level,
         judged; /* mean square of a block's error over its variance, and of how many blocks */
-    sh_real usual_misfit; /* of the estimate, the mean over as many blocks [1] */
+    sh_real usual_misfit; /* usual misfit of the estimate: mean over as many blocks [1] */
     sh_real evidence;     /* of the change [1] */
     /* Blocks since the hypothesis of other friction began, in blocks.drifting; 0: it has not. */
     sh_real friction_blocks;
     int widened;        /* next column of friction that gets the variance of its prior */
-    sh_real preference; /* for another spring over other friction, by the squares of their errors */
+    sh_real preference; /* evidence for another spring over other friction */
     /* Of the last block with another spring, and with other friction: squares over variances. */
     sh_real error, friction_error;
 } sh_change;
@@ -306,13 +306,13 @@ typedef struct {
     sh_real weights;         /* sum of the weights of all samples [1/(N.m)2] */
     sh_real misfit,
         variance_factor;  /* reduced chi-square of the blocks, factor of the variances [1] */
-    sh_real friction_std; /* of the relative error of viscous friction, at the last refit [1] */
+    sh_real friction_std; /* std deviation of D_theta's relative error at the last refit [1] */
     /* The last estimate, on which the next row depends: */
-    sh_real beta[SH_MAX_COLUMNS];     /* by column, in std deviations of the priors */
-    sh_real per_gain[SH_MAX_COLUMNS]; /* its change with the relative gain of the torque */
+    sh_real beta[SH_MAX_COLUMNS];     /* estimate by column, in std deviations of the priors */
+    sh_real per_gain[SH_MAX_COLUMNS]; /* change of beta with the relative gain of the torque */
     sh_variances variances;           /* of the torque of the spring [(N.m)2], and of the stiffness
                                          [(N.m/rad)2], if the gain is right */
-    sh_real y;                        /* of this tick, less the error of the last row [N.m] */
+    sh_real y;                        /* y of this tick, less the error of the last row [N.m] */
     sh_real sigma;                    /* stiffness [N.m/rad] */
     sh_real delay;                    /* of the torque [s] */
     sh_real viscous, inertia;         /* relative errors of motor.D_theta and motor.B [1] */

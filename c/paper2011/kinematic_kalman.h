@@ -1,6 +1,6 @@
 /* Kinematic Kalman filter for quantised positions, (9)-(11).
  *
- * It estimates position and velocity of one axis from its encoder alone.
+ * The filter estimates position and velocity of one axis from its encoder alone.
  */
 #ifndef SH_KINEMATIC_KALMAN_H
 #define SH_KINEMATIC_KALMAN_H

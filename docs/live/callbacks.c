@@ -1,4 +1,4 @@
-/* What the page gives to fmi2Instantiate: its logger is the function "log" of the page. */
+/* The callbacks that the page gives to fmi2Instantiate: the logger is the function "log" of the page. */
 #include "fmi2FunctionTypes.h"
 
 __attribute__((import_module("page"), import_name("log"))) void page_log(fmi2Status status,

@@ -62,7 +62,7 @@ void sh_joint_evaluate(const sh_joint *joint, size_t count, const double *phi,
     }
 }
 
-/* The outputs of the last tick, into place k of their arrays. */
+/* Writes the outputs of the last tick to place k of their arrays. */
 static void record(const sh_joint *joint, const sh_joint_output *outputs, size_t count, size_t k)
 {
     size_t i;

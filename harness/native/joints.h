@@ -1,6 +1,6 @@
-/* Estimators over arrays of samples, without an FMU between. The caller owns all memory.
+/* Estimators for arrays of samples, without an FMU. The caller owns all memory.
  *
- * A variable has the number that is its value reference in StiffnessEstimator.fmu.
+ * The number of a variable is its value reference in StiffnessEstimator.fmu.
  */
 #ifndef SH_JOINTS_H
 #define SH_JOINTS_H
@@ -19,7 +19,7 @@ typedef struct {
     void *values;      /* double; int [size: joints x samples] */
 } sh_joint_output;
 
-/* The model description that the numbers of variables are of. */
+/* GUID of the model description with these numbers of variables. */
 SH_EXPORT const char *sh_joint_guid(void);
 
 /* Size of sh_joint [bytes]. */

@@ -1,6 +1,6 @@
 /* The loop over the samples of a co-simulation, for any FMUs for FMI 2.0.
  *
- * Who loads and starts the FMUs gives a list of calls. For each sample, all of them are made in their
+ * The caller loads and starts the FMUs, and gives a list of calls. For each sample, all calls are made in their
  * order. A value goes from one FMU to another by a get and a set that use the same memory.
  */
 #ifndef SH_SAMPLE_LOOP_H
@@ -11,7 +11,7 @@
 #include "export.h"
 #include "fmi2FunctionTypes.h"
 
-/* Which FMI function a call is of, hence what its rows contain. */
+/* The FMI function of a call, which determines the contents of its rows. */
 enum {
     SH_CALL_SET_REAL = 1, /* fmi2Real, one per reference */
     SH_CALL_SET_SLOPES,   /* the same: first derivatives of the inputs */

@@ -23,7 +23,7 @@ What is on this page is public, and nothing else: other modules may change with 
 
 import lazy_loader
 
-# The list of public names is the stub beside this file. They are imported when they are used,
+# The list of public names is the stub beside this file. The public names are imported on first use,
 # because the command line has to start at once.
 _imported, _, _names = lazy_loader.attach_stub(__name__, __file__)
 
@@ -31,7 +31,7 @@ __all__ = sorted([*_names, "__version__"])
 
 
 def __getattr__(name: str) -> object:
-    """A public name. A package that it needs and that is missing is named with its extra."""
+    """A public name. If a required package is missing, the error names it and its extra."""
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}", name=name)
     from sigmahat.fmi import installed

@@ -42,8 +42,8 @@ def step(factor: float, at: float = AT) -> Callable[[Array], Array]:
     ("factor", "frequency"), [(2.0, 0.5), (0.5, 0.5), (1.3, 1.0), (2.0, 3.0), (1.3, 3.0)]
 )
 def test_a_step_of_the_stiffness_is_followed(c: Library, frequency: float, factor: float) -> None:
-    """GIVEN a stiffness that changes at 15 s, THEN this is detected, the estimate is hardly ever
-    confident and wrong by 20 %, and at the end it is right and confident, with the same motor."""
+    """GIVEN a stiffness that changes at 15 s, THEN this is detected. The estimate is hardly ever
+    confident and wrong by 20 %. At the end it is right and confident, with the same motor."""
     joint = Joint(
         duration=30.0, frequency=frequency, amplitude=0.8 / frequency, stiffness=step(factor)
     )
@@ -81,8 +81,8 @@ def test_samples_of_the_changed_spring_do_not_spoil_the_motor(
 def test_a_hypothesis_that_began_before_the_change_begins_anew(c: Library) -> None:
     """GIVEN noise that is a little evidence just before the change (of 40 seeds six).
 
-    The hypothesis has learned the old spring. It must not take the contradiction for another
-    motor.
+    The hypothesis has learned the old spring. The hypothesis must not take the contradiction for
+    another motor.
     """
     stiffness = step(2.0, AT + 0.02)
     joint = Joint(duration=22.0, frequency=0.5, amplitude=1.6, stiffness=stiffness, seed=37)
@@ -139,7 +139,7 @@ def test_the_age_is_the_time_since_the_last_change(c: Library) -> None:
     [
         (Joint(duration=60.0), {}),
         (Joint(duration=60.0, tau_coulomb=0.03, seed=3), {}),
-        (Joint(duration=60.0, noise=0.02, seed=4), {}),  # six times the noise that is configured
+        (Joint(duration=60.0, noise=0.02, seed=4), {}),  # six times the configured noise
         (Joint(duration=60.0, tau_coulomb=0.015, seed=5), WRONG_MOTOR),
         (Joint(duration=60.0, deformation=0.2, seed=6), {"rls.n": 1, "prior.power": 0.0}),
     ],
@@ -157,8 +157,8 @@ def test_a_misfit_is_no_change(c: Library, joint: Joint, parameters: dict[str, f
     ids=lambda change: " ".join(f"{name} {value:g}" for name, value in change.items()),
 )
 def test_friction_that_changes_is_told_from_the_spring(c: Library, change: dict[str, Any]) -> None:
-    """GIVEN friction that changes at 12 s, in two motions with six seeds, THEN a change of the
-    spring is reported in a quarter of the runs at most, and the stiffness is right 10 s later."""
+    """GIVEN friction that changes at 12 s, in two motions with six seeds, THEN at most a quarter of
+    the runs report a change of the spring, and the stiffness is right 10 s later."""
     reported = 0
     for kind, seed in product((MisfitJoint, Joint), range(1, 7)):
         slow: dict[str, Any] = {"frequency": 0.5, "amplitude": 1.6} if kind is Joint else {}
@@ -175,7 +175,7 @@ def test_friction_that_changes_is_told_from_the_spring(c: Library, change: dict[
 
 @pytest.mark.parametrize("parameters", [{"regression.memory": 0.0}, {"method": 1}])
 def test_no_change_is_looked_for(c: Library, parameters: dict[str, float]) -> None:
-    """Without memory, and by the method of the paper."""
+    """Runs without memory, and with the method of the paper."""
     joint = Joint(duration=20.0, stiffness=step(2.0))
     found = Estimator(c, {**REGRESSION, **parameters}).run(joint.measurements())
     assert np.all(found["change_age"] == -1)

@@ -34,7 +34,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @cache
 def cost(tree: Path) -> str:
-    """What a build of examples/controller costs: memory, stack, and instructions of a tick."""
+    """Cost of a build of examples/controller: memory, stack, and instructions of a tick."""
     return run("cmake", "--build", str(tree), "--target", "cost")
 
 
@@ -119,7 +119,7 @@ def test_smaller_sizes_cost_what_the_page_says(
 ) -> None:
     """The table of seven joints in docs/controller.md. Another compiler may differ a little.
 
-    What there is no memory for is refused.
+    Parameters that need more memory than there is are refused.
     """
     sizes = (f"SH_MAX_N={n}", f"SH_MAX_M={m}", f"SH_MAX_COLUMNS={columns}")
     tree = cross_build("examples/controller", TARGETS["Cortex-M4F"], "float", folder, sizes)
@@ -155,7 +155,7 @@ def test_the_library_needs_only_memory_and_math_functions(real: str, folder: Pat
 
 
 def test_the_commands_of_the_page_work(build: Path, tmp_path: Path) -> None:
-    """Runs those of docs/controller.md in a new folder, with the build tool of the environment."""
+    """Runs commands of docs/controller.md in a new folder, with our build tool."""
     for tool in TARGETS["Cortex-M4F"].tools:
         need(tool)
     for name in ("c", "cmake", "examples", "pyproject.toml"):

@@ -1,4 +1,4 @@
-"""The check of a state that comes from elsewhere: states of runs pass, damaged ones do not."""
+"""The check of a state from outside: states of runs pass, damaged states do not."""
 
 from itertools import product
 from typing import Any
@@ -28,8 +28,8 @@ def passes(e: Estimator) -> bool:
 @pytest.mark.parametrize("method", [PAPER2011, FILTERED_REGRESSION])
 @pytest.mark.parametrize("joint", JOINTS)
 def test_every_state_of_a_run_passes(c: Library, method: int, joint: dict[str, Any]) -> None:
-    """GIVEN a run with gaps, refused samples, and changes of the modality and of the noise, on
-    which the spacing of the rows depends at the start, THEN each of its 1500 states passes."""
+    """GIVEN a run with gaps, refused samples, and changes of the modality and of the noise, THEN
+    each of its 1500 states passes. The spacing of the rows depends on the noise at the start."""
     rng = np.random.default_rng(1)
     e = Estimator(c, {"method": method, **joint})
     assert passes(e)
@@ -62,13 +62,13 @@ LIMITS: dict[str, tuple[int, int]] = {
     **{f"{one}.column": (0, SIZE - 1) for one in ("posterior", "refit.posterior")},
     "columns.has_nominal": (0, 0),
 }
-"""Of integers of a state of FilteredRegression."""
+"""Ranges of integers in a state of FilteredRegression."""
 OTHERS = (
     *("columns.spring", "columns.knees", "columns.filtered", "columns.friction"),
     *("columns.inertia", "columns.column.kind", "columns.column.i", "columns.column.j"),
     *("change.widened", "signals.decimation", "mean.samples", "row.tick"),
 )
-"""Other integers of it, none of which can be below 0 or above 64."""
+"""Other integers of this state, none of which can be below 0 or above 64."""
 
 
 def damage(part: Any, member: str, place: int, value: float) -> None:
@@ -86,7 +86,7 @@ def damage(part: Any, member: str, place: int, value: float) -> None:
 
 @pytest.mark.parametrize("member", [*LIMITS, *OTHERS])
 def test_a_damaged_member_is_found(c: Library, member: str) -> None:
-    """An integer is out of all that it can be, at any of its places."""
+    """An integer is outside of its range, at any of its places."""
     for place, value in product(range(6), (-(2**15), -2, 65, 2**15 - 1)):
         e = Estimator(c, CONFIGURED)
         damage(e.state.method.regression, member, place, value)

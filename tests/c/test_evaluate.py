@@ -33,7 +33,7 @@ def evaluate(estimator: Estimator, phi: float, set_point: float) -> tuple[int, A
 def test_at_the_point_of_the_last_tick_it_gives_the_outputs(
     c: Library, values: dict[str, Any]
 ) -> None:
-    """With one sample in a row, the standard deviations are those of this tick, too."""
+    """If a row has one sample, the standard deviations also belong to this tick."""
     estimator = after(c, {**values, "regression.decimation": 1})
     e, before = estimator.estimate, estimator.lasting()
     result, found = evaluate(estimator, e.phi, e.setPoint)

@@ -45,7 +45,7 @@ NONE, FRICTION = 1, 6  # reasons of doubt
 def test_a_link_that_is_read_late_looks_like_friction_below_0(
     c: Library, late: int, D_theta: float, doubt: int
 ) -> None:
-    """The friction is unknown. It is doubted where it is less than none."""
+    """The friction is unknown. The friction is in doubt if it is below 0."""
     z = Joint(D_theta=D_theta).measurements()
     z[late:, 1] = z[: len(z) - late, 1]
     found = Estimator(c, {**REGRESSION, "prior.D_theta": 1000.0}).run(z)
@@ -55,8 +55,8 @@ def test_a_link_that_is_read_late_looks_like_friction_below_0(
 
 
 def test_rounding_alone_does_not_change_the_inertia(c: Library) -> None:
-    """GIVEN a motor that is so slow that its inertia has no effect, WHEN it has turned for a long
-    time, THEN B_hat is about the same as before, although theta'' consists of rounding errors."""
+    """GIVEN a motor so slow that its inertia has no effect, WHEN it has turned for a long time,
+    THEN B_hat has hardly changed, although theta'' consists of rounding errors."""
     joint = Joint(duration=40.0, frequency=0.02, amplitude=30.0, B=1.1 * 2.3e-5)
     estimator = Estimator(c, ALL)
     found = estimator.run(joint.measurements())
@@ -84,7 +84,7 @@ def test_confident_compares_the_standard_deviation_with_the_threshold(c: Library
 
 @pytest.mark.parametrize("method", [PAPER2011, FILTERED_REGRESSION])
 def test_a_stiffness_of_zero_is_not_confident(c: Library, method: int) -> None:
-    """Of a basis without slope: its standard deviation is 0, too."""
+    """If the basis has no slope, the standard deviation is also 0."""
     values = {"method": method, "rls.n": 1, "rls.symmetric": 0}
     estimator = Estimator(c, values)
     assert (estimator.estimate.sigma, estimator.estimate.sigma_std) == (0.0, 0.0)

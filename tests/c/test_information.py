@@ -44,8 +44,8 @@ def test_a_prediction_is_what_taking_gives_and_changes_nothing(c: Library, size:
 
 @pytest.mark.parametrize("distance", [1e-3, 1e-6, 1e-9, 1e-12, 0.0])
 def test_columns_that_are_almost_equal(c: Library, distance: float) -> None:
-    """GIVEN a column that two others almost make up, THEN predictions are as good as with exact
-    arithmetic, and with priors so are the parameters: no pivot consists of rounding errors."""
+    """GIVEN a column that is almost a sum of two others, THEN predictions, and with priors the
+    parameters, are as good as in exact arithmetic: no pivot is a rounding error."""
     rng = np.random.default_rng(5)
     rows = rng.normal(size=(30, 4))
     rows[:, 3] = rows[:, 0] + rows[:, 1] + distance * rng.normal(size=30)

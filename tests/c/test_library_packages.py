@@ -137,7 +137,7 @@ def conan(build: Path, tmp_path_factory: pytest.TempPathFactory) -> Callable[...
 def test_conan_creates_the_package_and_its_program_runs(
     options: tuple[str, ...], number: int, least: int, most: int, conan: Callable[..., str]
 ) -> None:
-    """With these options of the recipe."""
+    """Uses these options of the recipe."""
     text = conan(
         *("create", REPOSITORY / "c", "--no-remote"),
         *(part for option in options for part in ("-o", f"sigmahat/*:{option}")),

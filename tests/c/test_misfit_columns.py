@@ -1,4 +1,4 @@
-"""What a joint has beside the model: it is estimated, can be switched off, and is doubted."""
+"""Effects outside of the model: each is estimated, can be switched off, and causes doubt."""
 
 import math
 from dataclasses import replace
@@ -36,8 +36,8 @@ OUTPUTS: dict[str, tuple[dict[str, Any], tuple[str, ...]]] = {
 @pytest.mark.parametrize(("way", "gamma"), [(1, -50.0), (-1, 50.0)])
 @pytest.mark.parametrize("output", OUTPUTS)
 def test_each_misfit_is_estimated(c: Library, output: str, way: int, gamma: float) -> None:
-    """The output has the true value within its accuracy, which is a small part of it, with the
-    right sign whatever the gear; and the stiffness is right."""
+    """The output has the true value within a small tolerance, with the right sign for every gear;
+    and the stiffness is right."""
     if output == "hysteresis_hat":
         way = 1  # no hysteresis gives energy
     misfit, columns = OUTPUTS[output]
@@ -125,7 +125,7 @@ def test_the_effect_of_the_gain_is_that_of_a_wrong_gain(
     z = MisfitJoint(duration=3.0, tau_coulomb=0.0).measurements()
     larger = z.copy()
     larger[:, 3] *= 1.01
-    # Without Coulomb friction, whose size decides on the weights of samples, and without misfit.
+    # Without misfit, and without friction, whose size decides on the weights of samples.
     weights = {"prior.tau_coulomb": 0.0, "regression.memory": 0.0}
     settings = {**SETTINGS, **PLAIN, **weights, **values}
     first, second = (Estimator(c, settings).run(samples)[-1] for samples in (z, larger))
@@ -184,7 +184,7 @@ def test_the_first_misfit_is_a_doubt(c: Library) -> None:
 
 @pytest.mark.parametrize(("n", "times"), [(1, 32), (2, 32 ** (1 / 3)), (3, 2), (4, 2)])
 def test_a_deformation_far_beyond_the_range_is_a_doubt(c: Library, n: int, times: float) -> None:
-    """Where the highest power is over 32 times as large as at range.phi."""
+    """The doubt begins where the highest power is over 32 times as large as at range.phi."""
     z = Joint(duration=4.0).measurements()
     estimator = Estimator(c, {"method": 2, "rls.n": n, "range.phi": 0.02})
     found = estimator.run(z)

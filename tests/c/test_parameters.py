@@ -52,7 +52,7 @@ def test_a_struct_has_the_fields_of_the_list(
 
 
 def test_start_values_and_ranges_are_those_of_the_list(c: Library, listed: list[Any]) -> None:
-    """A limit is accepted itself, and what is beyond it is refused."""
+    """A limit is accepted, and values beyond it are refused."""
     for variable in (v for v in listed if v.causality == "parameter"):
         p: Any = c.parameters({})  # it owns the memory of its parts
         value = attrgetter(variable.name)(p)

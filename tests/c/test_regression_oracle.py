@@ -123,7 +123,7 @@ THETA, THETA_DOT, THETA_DDOT, PHI, LEVER = WIDE.motion
 GEAR_ANGLE, GEAR_VELOCITY = GAMMA * THETA, GAMMA * THETA_DOT
 NO_GAP = {"prior.gap": 0.0}
 NO_HYSTERESIS = {**NO_GAP, "prior.hysteresis": 0.0}
-# The widest dead zone, 16 % of the range, is what is taken out, and no other column is.
+# Only the column of the widest dead zone, 16 % of the range, is taken out.
 NARROW = {"prior.power": 0.0, "prior.hysteresis": 0.0, "range.phi": 0.06}
 
 
@@ -155,7 +155,7 @@ MISFITS: Mapping[str, tuple[Array | Mapping[str, Any], Mapping[str, float], int]
         0,
     ),
     "cogging": (-GAMMA * 0.03 * np.sin(6 * GEAR_ANGLE), {"regression.memory": 2.0}, 0),
-    # With a short memory, its past is forgotten before it is seen to drift.
+    # With a short memory, the past is forgotten before the drift is noticed.
     "friction that warms up": (
         -(GAMMA**2) * 1e-3 * THETA_DOT * 0.3 * WIDE.t,
         {"regression.memory": 200.0},
@@ -163,7 +163,7 @@ MISFITS: Mapping[str, tuple[Array | Mapping[str, Any], Mapping[str, float], int]
     ),
     "load friction and delay": ({"load_friction": 0.15, "delay": 3e-3}, {}, 0),
 }
-# What looks like friction that drifts, and what like friction that changes.
+# Effects that look like friction that drifts, or like friction that changes.
 DRIFTING = ("load friction and delay", "set-point", "encoder of the motor")
 OTHER_FRICTION = ("friction that warms up",)
 

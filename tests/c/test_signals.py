@@ -22,7 +22,7 @@ SLOW = 0.05  # [rad/s]
 def run(
     c: Library, positions: Array, count: float = COUNT, slow: float = SLOW * T
 ) -> tuple[Array, Array]:
-    """For every sample but the first: mean sign, and 0 if it is known, else 1 or more."""
+    """For every sample except the first: mean sign; and 0 if the sign is known, else 1 or more."""
     signs, unknown = direction(c, positions, count, slow)
     return signs[1:], unknown[1:]
 
@@ -53,7 +53,7 @@ def test_the_sign_is_unknown_while_the_motor_creeps(c: Library) -> None:
 def test_the_sum_of_the_signs_over_a_reversal_is_right(
     c: Library, acceleration: float, seed: int
 ) -> None:
-    """It differs from the sum of the true signs by less than one sample."""
+    """The sum differs from the sum of the true signs by less than one sample."""
     turn = 0.1 + np.random.default_rng(seed).uniform(0, T)
     t = T * np.arange(201.0)
     offset = np.random.default_rng(seed + 100).uniform(0, COUNT)
@@ -92,7 +92,7 @@ def test_a_reversal_subtracts_the_wrong_signs_and_counts_them_as_unknown(c: Libr
 
 
 def test_the_sign_is_unknown_before_the_first_step(c: Library) -> None:
-    """Also after a second start: nothing of the motion before is left."""
+    """A second start deletes all effects of the earlier motion."""
     motion = c.new("sh_motion_sign")
     for _ in range(2):
         c.lib.sh_motion_sign_start(motion, 3.0)
@@ -135,7 +135,7 @@ def random_walk(seed: int) -> Array:
 @pytest.mark.parametrize("held", [False, True])
 @pytest.mark.parametrize("w", [1.0, 200.0, 3000.0])
 def test_signals_are_filtered_exactly(c: Library, w: float, held: bool) -> None:
-    """Of each filter: a signal that is linear between samples, or held before each sample."""
+    """Input of each filter: a signal that is linear between samples, or held before each sample."""
     walk, sizes = random_walk(1), np.arange(1.0, 1 + c.lib.SH_FILTERS)
     filters = Filters(c, w, walk[0] * sizes, 0 * sizes)
     got = [filters.outputs]

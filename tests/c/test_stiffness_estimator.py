@@ -59,7 +59,7 @@ def test_limits_by_other_parameters(
 
 
 def test_a_curve_of_exact_shape_needs_a_nominal_curve_and_its_uncertainty(c: Library) -> None:
-    """FilteredRegression requires them if prior.tau_e = 0, so that the shape is exact."""
+    """FilteredRegression requires both if prior.tau_e = 0, which makes the shape exact."""
     exact = {"method": 2, "prior.tau_e": 0.0}
     for values in (exact, {**exact, "prior.nominal": 0.3}):
         problem = c.violation(c.parameters(values))
@@ -169,9 +169,8 @@ LARGEST = {**REGRESSION, "rls.n": 8, "rls.m": 5, "range.phi": 1e-6}
 def test_a_refused_sample_leaves_the_state_as_a_lost_one(
     c: Library, name: str, bad: float, values: Mapping[str, float], at: int
 ) -> None:
-    """GIVEN a sample that is not finite or whose powers overflow, before the first good sample,
-    after a gap, while the filters settle or later, WHEN it is skipped, THEN all is as if it were
-    lost, and no output but `valid` changes."""
+    """GIVEN a sample that is not finite or whose powers overflow, at any time, WHEN it is skipped,
+    THEN all is as if it were lost, and no output but `valid` changes."""
     lost = table1_recording().measurements()[:1500]
     lost[[0, 500, at]] = math.nan
     refused = lost.copy()
@@ -199,7 +198,7 @@ def test_the_estimator_starts_with_the_first_good_sample(c: Library) -> None:
 @pytest.mark.parametrize("modality", MODALITIES)
 @pytest.mark.parametrize("gap", [1, 10, 1000])
 def test_the_estimate_stays_accurate_after_a_gap(c: Library, gap: int, modality: int) -> None:
-    """For ten time constants of the residual. Without a gap it is within 1.5 % there."""
+    """For ten time constants of the residual; without a gap, the error is below 1.5 % there."""
     recording = table1_recording()
     z = recording.measurements()
     z[2000 : 2000 + gap, 0] = math.nan
@@ -225,8 +224,8 @@ def test_the_regression_continues_when_the_residual_has_settled(c: Library, lost
 
 
 def test_the_residual_does_not_integrate_over_a_gap_of_two_time_constants(c: Library) -> None:
-    """GIVEN 1 / K_I of two sample periods, WHEN three samples are lost, so that the step is 2 / K_I
-    long, THEN the residual does not change; WHEN two are lost, it does."""
+    """GIVEN 1 / K_I of two sample periods, WHEN three samples are lost (a step of 2 / K_I), THEN
+    the residual does not change; WHEN two are lost, it does."""
     T = 1.0 / 1024.0
     for lost, stays in ((2, False), (3, True)):
         estimator = Estimator(c, {"samplePeriod": T, "residual.K_I": 512.0})
@@ -259,9 +258,9 @@ def compare(got: np.ndarray[Any, Any], want: oracle.Estimate, torque: Array) -> 
     """Every output of every tick, see `oracle.relative_error`. The paper estimates no inertia.
 
     Two signals are less exact where they cross zero, so their errors are relative to something
-    else. epsilon is the difference of two torques, each with a rounding error, so its error is
-    relative to the range of the torque. eta is compared as a vector, its entries scaled by their
-    largest values.
+    else. The error of epsilon, a difference of two torques with rounding errors, is relative to the
+    range of the torque. The vector eta is compared as a whole, with entries scaled by their largest
+    values.
     """
     n, m = want["eta"].shape[1:]
     scales = {"epsilon": float(np.ptp(torque))}

@@ -72,7 +72,7 @@ static inline sh_status fmi_enter_initialization(void *instance, double start, i
     return (sh_status)(status == fmi2OK ? fmi2EnterInitializationMode(instance) : status);
 }
 
-/* Time of the instance [s], or `otherwise` if it does not tell it now. */
+/* Time of the instance [s], or `otherwise` if the instance does not give its time now. */
 static inline double fmi_time(void *instance, double otherwise)
 {
     fmi2GetRealStatus(instance, fmi2LastSuccessfulTime, &otherwise);

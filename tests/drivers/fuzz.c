@@ -2,9 +2,9 @@
  *
  * The bytes of the fuzzer choose the calls, one after the other, until there are no more bytes. Most
  * arguments are valid, because else no sequence would get past its first calls. The sanitizers look
- * for undefined behaviour and leaks. This program checks that a refused step does not change the
- * time, that an accepted one ends where it should, that a restored state gives the same step bit for
- * bit, that damaged states and wrong GUIDs are refused, and that the logger receives valid arguments.
+ * for undefined behaviour and leaks. This program checks these rules. A refused step does not change the time, and an
+ * accepted step ends at the right time. A restored state gives the same step bit for bit. Damaged states and wrong
+ * GUIDs are refused. The logger receives valid arguments.
  */
 #include <float.h>
 #include <locale.h>
@@ -15,7 +15,7 @@
 #include "drive.h"
 
 enum { SLOTS = 3, MAX_REFERENCES = 6, TEXT = 16, MAX_TICKS = 50, BLOCKS = 16 };
-enum { CHECKSUM = 120 }; /* its place in a serialised state, behind the rest of the header */
+enum { CHECKSUM = 120 }; /* place of the checksum, at the end of the header */
 
 static const uint8_t *next, *end; /* the remaining bytes of the fuzzer */
 static void *instance;
@@ -123,7 +123,7 @@ static void check_message(int status, const char *category, const char *message)
 
 #if SH_FMI == 2
 
-static int allocations_left; /* until the allocator of the importer fails */
+static int allocations_left; /* number of allocations until the allocator fails */
 
 static void *allocate(size_t count, size_t size)
 {

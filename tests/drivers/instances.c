@@ -2,7 +2,7 @@
  * for bit.
  *
  * An instance also saves, serialises and restores its state, makes a call that is
- * refused, and is reset. A checker of memory sees what it leaves behind.
+ * refused, and is reset. A memory checker finds memory that is not freed.
  */
 #include <pthread.h>
 #include <stdlib.h>

@@ -3,9 +3,9 @@
  * master TOKEN H INPUTS REFERENCE...
  *
  * TOKEN is the GUID of the FMU, and H the communication step in s. The references are those of the
- * Real inputs, INPUTS of them, then of the Real outputs; arrays are left out. For each row of inputs
- * the FMU makes a step, and a row of outputs goes to stdout with all digits; the first row is that
- * before the first step. Returns 0 if every call returned OK.
+ * Real inputs, INPUTS of them, then of the Real outputs; arrays are left out. For each row of inputs the FMU makes a
+ * step, and a row of outputs goes to stdout with all digits. The first row has the outputs before the first step.
+ * Returns 0 if every call returned OK.
  */
 #include <stdio.h>
 

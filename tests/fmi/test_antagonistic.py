@@ -32,7 +32,7 @@ def step(instances: list[Instance], k: int, bad: dict[str, float] | None = None)
 
 
 def doubt_of_sum(pair: Instance, one: Instance, two: Instance) -> float:
-    """The worse reason of the sides; that a side alone moves too little is none."""
+    """The worse reason of the sides; too little motion of one side alone is no reason."""
     worst = max(one.get("doubt"), two.get("doubt"))
     if worst not in (CONFIDENT, NOT_EXCITED):
         return worst
@@ -74,8 +74,8 @@ def test_bit_identical_to_two_estimators(values: dict[str, float]) -> None:
 
 
 def test_a_new_misfit_of_a_side_is_a_doubt_of_the_sum() -> None:
-    """GIVEN two equal sides that contradict the model from the first sample on, THEN the sum is in
-    doubt as they are, although its sigma_std is small."""
+    """GIVEN two equal sides that contradict the model from the first sample on, THEN the sum is
+    also in doubt, although its sigma_std is small."""
     joint = Joint(duration=1.4, deformation=0.01)
     z = joint.measurements()
     z[:, 3] += 0.02 * np.sin(3 * 50 * joint.motion[0])

@@ -29,7 +29,7 @@ RESIDUAL = scenario("table1").estimators["RESIDUAL"]
 
 
 def test_fmpy_gives_the_same_estimate_from_the_recorded_measurements() -> None:
-    """Of an estimator that ran beside five others, none of which had an effect on it."""
+    """Outputs of an estimator that ran beside five others, without an effect of these others."""
     recording = one_seed("table1").recording
     names = ["time", *RESIDUAL.connections]
     inputs = np.zeros(len(recording.t), [(name, np.float64) for name in names])
@@ -193,7 +193,7 @@ print(failed)
     assert run(sys.executable, "-c", program) == "0\n"
 
 
-# Messages of FMUs: each comes to the slave that it is of
+# Messages of FMUs: each message is assigned to its slave
 
 
 def step_without_theta(slave: Slave) -> None:

@@ -27,7 +27,7 @@ DISPLAYED = {
     **{"rad": "deg", "rad/s": "deg/s", "m": "mm", "s": "ms", "kg.m2": "g.cm2"},
     **{"N/m": "N/mm", "m/rad": "mm/rad"},
 }
-"""What masters show in the place of a unit."""
+"""Display units, which masters show instead of a unit."""
 UNITS: Any = pint.UnitRegistry()
 
 
@@ -42,7 +42,7 @@ def read(fmu: Path, name: str = "modelDescription.xml") -> Any:
 
 
 def quantity(unit: str) -> Any:
-    """One of a unit such as kg.m2, which pint calls kg*m**2."""
+    """Pint quantity 1 of a unit such as kg.m2, which pint calls kg*m**2."""
     return UNITS.Quantity(1.0, re.sub(r"(?<=[A-Za-z])(\d)", r"**\1", unit.replace(".", "*")))
 
 
@@ -107,7 +107,7 @@ def known_values(fmu: Instance) -> dict[str, list[float]]:
 
 
 EFFECTIVE = {
-    "spring.gap": 1e-3,  # so that the spring is engaged
+    "spring.gap": 1e-3,  # the spring is engaged
     # below the deformation, and above it when it is 1.2345 times as large
     **{"spring.knee_1": 0.3, "spring.knee_2": 0.3, "range.knee": 0.0, "range.knee_2": 0.0},
     **{"spring.step_at": 0.0, "spring.step_for": 0.0},  # so that it has changed at the start

@@ -1,4 +1,5 @@
-"""What no importer may do is refused with a message, and changes nothing: FMI 2.0 and 3.0."""
+"""Forbidden calls are refused with a message, and change nothing: FMI 2.0 and
+3.0."""
 
 import ctypes
 import math
@@ -38,7 +39,7 @@ def refused(fmu: Any, said: str, function: Callable[..., int], *arguments: Any) 
 # Parameters and measurements
 
 
-# At this limit alone, a relation to another parameter is not met: filter.V_min is not above V_max.
+# Only at this limit, a relation to another parameter is violated: filter.V_min is not above V_max.
 REFUSED_BY_A_RELATION = {("filter.V_max", "min")}
 
 
@@ -466,7 +467,7 @@ def test_the_logger_gets_the_name_of_the_instance(name: str) -> None:
 
 
 def test_messages_show_texts_of_the_importer_in_ascii() -> None:
-    """So they are UTF-8, whatever the importer gave, and wherever a long message is cut."""
+    """So messages are UTF-8 for any bytes of the importer, even if a long message is cut."""
     with FMI2(token="{\udcff}") as fmu:
         assert "{?}" in fmu.last_message
     with FMI2() as fmu:
@@ -511,7 +512,7 @@ def test_a_step_after_the_stop_time_is_refused(name: str, fmi: Fmi) -> None:
             for late in (h, 2.1e-3 * h, h):
                 said = "expected an end not after stopTime = 1.01 s"
                 refused(fmu, said, fmu.step, 1.0 + count * h, late)
-            assert fmu.step(1.0 + count * h, 1e-13) == OK  # as an importer makes it by rounding
+            assert fmu.step(1.0 + count * h, 1e-13) == OK  # a step that rounding can cause
 
 
 TOO_LARGE = "more than 11000 internal steps. Expected inputs and parameters of a joint; the largest"

@@ -38,7 +38,7 @@ def test_a_library_that_cannot_be_used(
     name: str, value: object, reason: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(native, name, value)
-    with pytest.raises(FmuError, match=rf"native.*: not a usable library \(.*{reason}.*again"):
+    with pytest.raises(FmuError, match=rf"native.*: cannot load this \(.*{reason}.*again"):
         native.library.__wrapped__()
 
 
@@ -76,7 +76,7 @@ def test_an_interrupt_has_its_effect_at_the_end_of_the_block() -> None:
         signal.raise_signal(signal.SIGINT)
         done.append("after the signal")
     assert done == ["after the signal"]
-    with pytest.raises(KeyboardInterrupt):  # the handler is that of before
+    with pytest.raises(KeyboardInterrupt):  # the handler is the earlier one
         signal.raise_signal(signal.SIGINT)
 
 
@@ -97,7 +97,7 @@ def test_interrupts_at_any_moment_end_it_and_leave_it_whole() -> None:
     plant = Plant(path, {}, lost, ["sigma"])  # a warning every fourth sample
     random = np.random.default_rng(1)
     interrupted = 0
-    simulate(plant, {}, T, 10)  # what others do when an FMU is read is not our affair
+    simulate(plant, {}, T, 10)  # reads the FMU in advance: other libraries are not tested here
     logging.getLogger("sigmahat").propagate = False  # to pytest, which keeps every warning
     before = signal.signal(signal.SIGALRM, lambda *_: signal.raise_signal(signal.SIGINT))
     for _ in range(60):

@@ -28,7 +28,7 @@ def test_a_million_steps_of_a_sample_period_are_a_million_ticks() -> None:
     with Fmu(sigmahat.fmu("StiffnessEstimator")) as fmu, Slave(fmu, "one") as slave:
         slave.initialize({**COUNTING, "modality": "Sensor", "rls.kind": "Standard"})
         h, loop, count = 1e-3, SampleLoop(), 1_000_000
-        # With the same rounding errors as in importers, which add up the time.
+        # The rounding errors are as in importers, which add up the time.
         times = np.concatenate([[0.0], np.cumsum(np.full(count - 1, h))])
         loop.step(slave, step_times(times, h))
         loop.run(0, count)
@@ -132,7 +132,7 @@ def test_an_input_derivative_is_used_for_one_step_only(name: str) -> None:
 def test_parameters_that_contradict_each_other_stop_the_step_until_they_are_corrected(
     fmi: Fmi,
 ) -> None:
-    """Whether they were set, or are those of a state."""
+    """The parameters were set, or come from a state."""
     with fmi().initialise(COUNTING) as fmu:
         assert fmu.step(0.0, 1e-3) == OK
         fmu.set_all({"filter.V_min": 11.0})

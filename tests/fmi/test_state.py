@@ -65,7 +65,7 @@ def test_an_instance_after_a_reset_is_like_a_new_one(name: str, fmi: Fmi) -> Non
 
 @each_kind
 def test_a_restored_state_continues_bit_for_bit(name: str, fmi: Fmi) -> None:
-    """In the instance that it is of, and, serialised, in another process."""
+    """The state is restored in its own instance and, serialised, in another process."""
     with fmi(name) as fmu:
         driver = Driver(fmu)
         fmu.initialise()

@@ -39,9 +39,9 @@ CONFIGURATION: dict[str, dict[str, float]] = {
 # estimator makes it slower than regression.bandwidth unless the encoder is fine.
 FAST = {"method": 2, "regression.bandwidth": 1900, "encoder.theta": 4e6}
 METHODS: dict[int, dict[str, float]] = {1: {}, 2: FAST}
-# Has its effect at the end of a pass, and not already at the next tick.
+# The parameter has its effect at the end of a pass, and not already at the next tick.
 LATER = "regression.drift"
-# The new value if 1.5 times the start value has too little effect.
+# New values for parameters for which 1.5 times the start value has too little effect.
 CHANGED = {
     "modality": 2,
     "limit.relative_std": 1e-12,
@@ -52,7 +52,7 @@ CHANGED = {
 
 
 def other_value(name: str, variable: Any) -> float:
-    """A value of a parameter with which it has another effect."""
+    """A value that changes the effect of a parameter."""
     if name in CHANGED:
         return CHANGED[name]
     return 1.5 * float(variable.start) or OTHER_THAN_0[variable.unit]
@@ -123,7 +123,7 @@ def methods(name: str) -> list[int]:
     if name.startswith(("residual.", "filter.")):
         return [1]
     if name == "regression.memory":
-        return []  # it acts on a misfit, which takes four blocks of 50 ms to be seen
+        return []  # acts on a misfit, which shows after four blocks of 50 ms
     return [2] if name.startswith(("regression.", "torque.", "limit.relative_std")) else [1, 2]
 
 
@@ -156,7 +156,7 @@ def test_an_estimator_continues_like_the_library_with_the_new_value(
 
 @pytest.mark.parametrize(("fmu", "name"), tunables(PLANTS))
 def test_a_plant_continues_from_its_state_with_the_new_value(fmu: str, name: str) -> None:
-    """Like another plant that has the new value from the start and starts in that state."""
+    """The plant then moves like another plant that starts in this state with the new value."""
     with FMI2(fmu) as instance:
         variables = instance.variables
         outputs = names(instance, "output")

@@ -72,7 +72,7 @@ class Library:
         return getattr(self.lib, name)
 
     def pointer(self, array: Array) -> Any:
-        """A pointer to a contiguous array of reals. It is valid as long as the array exists."""
+        """A pointer to a contiguous array of reals, valid as long as the array exists."""
         return self.ffi.cast(f"{self.real} *", self.ffi.from_buffer(array, require_writable=False))
 
     def dtype(self, struct: str) -> np.dtype[Any]:

@@ -146,7 +146,7 @@ def log_under_gravity(change: float) -> Mapping[str, Array]:
     change  of the stiffness, relative: 1 doubles it
     """
     t, theta, velocity, acceleration = _sines(0.4)
-    load = 12.0 * np.sin(theta) + acceleration  # of a weight and 1 kg.m2, on the spring [N.m]
+    load = 12.0 * np.sin(theta) + acceleration  # torque of a weight and 1 kg.m2 [N.m]
     K = KNEE["spring.k_1"] * np.where(t < 8.0, 1.0, 1.0 + change)
     tau = _motor_torque(velocity, acceleration) + load / GEAR
     noise = 1e-3 * np.random.default_rng(1).standard_normal(len(t))

@@ -35,10 +35,10 @@ class Shell:
     """Runs commands without "sigmahat" before them; separates arguments as a shell does."""
 
     err = ""
-    """What the last command printed there."""
+    """Output of the last command there."""
 
     def run(self, command: str, status: int = 0) -> str:
-        """What a command prints that must end with this status."""
+        """Output of a command that must end with this status."""
         done = in_process(*shlex.split(command))
         self.err = done.stderr
         assert done.returncode == status, done.stderr

@@ -1,7 +1,7 @@
 """Commands of sigmahat with files from strangers: each in a process of its own, with limits.
 
 One process imports the package and is forked for every command, so that one takes some hundredths
-of a second. Each imports this file, too, so it stands alone.
+of a second. Each process also imports this file, so the file imports no other helper.
 """
 
 import json
@@ -35,14 +35,14 @@ _SERVER.set_forkserver_preload(
 
 @dataclass(frozen=True)
 class Done:
-    status: int  # of the exit; negative: the number of the signal that ended it
+    status: int  # exit status; negative: the number of a signal
     out: str
     err: str
     seconds: float
     megabytes: float  # peak of the memory in RAM
 
     def complaint(self) -> str | None:
-        """What the command did that no file may make it do; None if all is well."""
+        """A forbidden action of the command that a file has caused; None without one."""
         if self.seconds > LONGEST:
             return f"took {self.seconds:.1f} s"
         if self.megabytes > MOST_MEMORY:
@@ -81,7 +81,7 @@ def _run(folder: Path, arguments: tuple[str, ...], place: Path) -> None:
     resource.setrlimit(resource.RLIMIT_AS, (_ADDRESSES, _ADDRESSES))
     resource.setrlimit(resource.RLIMIT_FSIZE, (_FILES, _FILES))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    signal.setitimer(signal.ITIMER_REAL, _KILLED_AFTER)  # its default is to end the process
+    signal.setitimer(signal.ITIMER_REAL, _KILLED_AFTER)  # the signal ends the process
     try:
         sys.exit(main(arguments))
     finally:

@@ -20,7 +20,7 @@ def squared_error(sums: "Information", row: "Long", variance: float) -> float:
 
 
 class Change:
-    """Whether the spring, or friction, has changed. It never has in the runs of the oracle."""
+    """Whether the spring, or friction, has changed. In the oracle's runs, neither has."""
 
     def __init__(self, sums: "Information", spring: int, friction: slice) -> None:
         """spring, friction  columns: the number of the first ones, and the others"""

@@ -1,7 +1,7 @@
 """FilteredRegression in numpy, written from the headers in c/filtered_regression/, with dense
 matrices in extended precision.
 
-It shares nothing with the C code except the direction of motion, which has its own tests.
+This code shares nothing with the C code except the direction of motion, which has its own tests.
 """
 
 import math
@@ -88,7 +88,7 @@ class Information:
         self.multiply(rows, np.maximum(D * keep, self.least), rest * keep)
 
     def restart(self, count: int, precision: float) -> None:
-        """Of the first parameters, only this precision is known."""
+        """For the first parameters, only this precision is known."""
         rows, D, rest = self.factors()
         rows[:count] = np.eye(self.size, len(self.matrix))[:count]
         D[:count] = precision
@@ -157,7 +157,7 @@ class Posterior:
         self.P = self.P + information * gain * np.outer(along, along)
 
     def remove(self, information: float) -> None:
-        """What rounding of theta seems to tell about b, as far as the prior stays."""
+        """Removes false information about b by rounding of theta, as far as the prior stays."""
         self.surplus += information
         back = min(self.surplus, float(1 / self.P[-1, -1] - 1))
         if back > 0:
@@ -166,7 +166,7 @@ class Posterior:
             self.removed += back
 
     def remove_noise(self) -> None:
-        """Of the torque in its own column."""
+        """Noise of the torque in its own column."""
         N, by_gain = self.of_drive
         if self.drive < 0 or N <= 0:
             return
@@ -244,7 +244,7 @@ class Oracle:
         # What the last row still changes, and ticks since it as far as there is something.
         self.steps, self.tick = iter(list[None]()), self.K
         self.friction_drifts = self.known = self.is_built = self.has_row = False
-        self.new_variances = False  # of stiffness and torque, to be computed at this tick
+        self.new_variances = False  # whether this tick computes the variances
         self.set_beta()
         self.sigma = self.y = self.delay = 0.0
         self.resting = self.unsure = 0
@@ -336,7 +336,7 @@ class Oracle:
         return 0.2 if count < 15 else 0.0101 * 0.05 * count
 
     def end_build(self) -> None:
-        """Without the noise in its columns; rows that come until it is used are learned later."""
+        """Removes the noise in its columns; rows that come before it is used are added later."""
         self.build.solve(self.data)
         if self.p["prior.B"] > 0:
             self.build.remove(0.0)
@@ -570,7 +570,7 @@ class Oracle:
         blocks.rows.clear()
 
     def follow(self) -> None:
-        """What a tick without a new row does."""
+        """Work of a tick without a new row."""
         ticks = max(self.K - 1, 1)
         if self.tick < ticks:
             first, end = (math.ceil(7 * tick / ticks) for tick in (self.tick, self.tick + 1))
@@ -606,7 +606,7 @@ class Oracle:
         if filtered.measured or self.starting <= 0:
             return True
         self.starting -= self.K * self.T
-        # What a joint has beside the equation must not hide a slow motion.
+        # Effects outside of the equation must not hide a slow motion.
         chosen = self.live.chosen
         x = np.where([self.kinds[i] in EQUATION for i in chosen], row[chosen], 0)
         variance = self.torque_noise + self.inertial * self.counts[0] ** 2 / 12
@@ -699,7 +699,7 @@ class Oracle:
     # Outputs
 
     def set_beta(self) -> None:
-        """What the posterior says, by the gain and by y, until it changes."""
+        """Estimates of the posterior, by the gain and by y, until it changes."""
         estimates, self.P = self.live.weighted()
         self.by_gain, self.beta = np.zeros((SIDES, self.n), dtype=np.longdouble)
         self.by_gain[self.live.chosen], self.beta[self.live.chosen] = estimates.T

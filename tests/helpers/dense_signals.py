@@ -80,7 +80,7 @@ Column = tuple[str, int, float]  # kind, number in its kind, prior
 
 
 def columns(p: Parameters) -> list[Column]:
-    """The columns in their order. Those with a prior of 0 are left out."""
+    """The columns in their order. Columns with a prior of 0 are left out."""
     tau_e, n, m = p["prior.tau_e"], p["rls.n"], p["rls.m"]
     K_0 = tau_e / p["range.phi"]
     most_n, most_m = 8, 5
@@ -134,7 +134,7 @@ TORQUE = (*CURVE, "DEAD_ZONE")
 
 
 def plays(phi: Array, runs: list[slice], range_phi: float) -> Array:
-    """States of the stop operators [size: ticks x 3]. They do not move over a gap."""
+    """States of the stop operators [size: ticks x 3]. The operators do not move over a gap."""
     inside = np.zeros(len(phi), dtype=bool)
     for run in runs:
         inside[run.start + 1 : run.stop] = True
@@ -246,7 +246,7 @@ class Filtered:
         return through(x, order, self.w, self.T, held)
 
     def column(self, i: int) -> Array:
-        """What does not depend on the estimate; LOAD, DELAY, SIN_M, and COS_M are set later."""
+        """Signals without the estimate; LOAD, DELAY, SIN_M, and COS_M are set later."""
         kind, _, prior = self.columns[i]
         sign = np.append(self.sign[1:], 0.0)
         smooth = np.asarray(signal.lfilter(*as_if_smooth(self.w, self.T), self.sign))
@@ -268,7 +268,7 @@ class Filtered:
         return self.filtered(self.F[:, i], 0)
 
     def encoder_error(self, i: int) -> tuple[Array, Array]:
-        """Of the column i: its signal filtered, and the torque of the motor that it causes."""
+        """For the column i: the filtered signal, and the motor torque that it causes."""
         f = self.F[:, i]
         motor = self.of_velocity * self.filtered(f - f[0], 1)
         motor = motor + self.of_acceleration * self.filtered(f - f[0], 2)

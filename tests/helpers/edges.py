@@ -1,4 +1,4 @@
-"""What the tests of the numerical promises share: docs/proof/promises.md.
+"""Common parts of the tests of the numerical promises in docs/proof/promises.md.
 
 Parameters and measurements are at the edges of what is allowed. SIGMAHAT_PROMISES=100 runs a
 hundred times as many examples.

@@ -30,7 +30,7 @@ def functions(prefix: str) -> dict[str, list[str]]:
 
 
 def of_an_instance(prefix: str) -> dict[str, list[str]]:
-    """Those that take an instance and leave it."""
+    """Functions that take an instance and do not free it."""
     return {
         name: parameters
         for name, parameters in functions(prefix).items()

@@ -19,7 +19,7 @@ from fmpy import fmi2, fmi3
 OK, WARNING, DISCARD, ERROR = 0, 1, 2, 3
 SIZE, REAL = ctypes.c_size_t, ctypes.c_double
 InstanceT = TypeVar("InstanceT", bound="_Instance")
-ENVIRONMENT = 4711  # of the importer, which the logger receives
+ENVIRONMENT = 4711  # environment pointer that the logger receives
 
 
 @cache
@@ -51,7 +51,7 @@ class _Instance:
             modelIdentifier=self.description.coSimulation.modelIdentifier,
             instanceName="test",
         )
-        # Without FMPy's declarations, so that arguments of any kind can be passed.
+        # The library has no declarations of FMPy, so arguments of any kind can be passed.
         self.dll: Any = ctypes.CDLL(self._loaded.dll._name)
         self.component: int | None = None
 
@@ -191,8 +191,8 @@ class Instance(_Instance):
         logging_on: bool = True,
     ) -> None:
         super().__init__(fmu)
-        self.names: set[str] = set()  # of the instance, that the logger received
-        self.blocks: set[int] = set()  # of memory that the instance allocated and has not freed
+        self.names: set[str] = set()  # instance names that the logger received
+        self.blocks: set[int] = set()  # addresses of memory that is not freed yet
         self.callbacks = fmi2.fmi2CallbackFunctions()
         if logger:
             self.callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(self._log)
@@ -285,7 +285,7 @@ class Instance3(_Instance):
         self.messages.append((status, category.decode(), text.decode()))
 
     def step(self, t: float, h: float) -> int:
-        """Makes a step, of which nothing may be asked and which may not end early."""
+        """Makes a step, which must neither ask for anything nor end early."""
         flags, reached = [ctypes.c_bool(True) for _ in range(3)], REAL(math.nan)
         places = [*map(ctypes.byref, flags), ctypes.byref(reached)]
         status = self.call("DoStep", REAL(t), REAL(h), True, *places)

@@ -49,7 +49,7 @@ def names(fmu: Any, causality: str, variability: str | None = None) -> list[str]
 
 
 def limits(variable: Any) -> Iterator[tuple[str, float, float]]:
-    """Of a parameter: which limit, the limit, and the next value outside."""
+    """For a parameter: name of the limit, the limit, and the next value outside."""
     lowest, highest = variable.min, variable.max
     if variable.type == "Enumeration":
         values = [item.value for item in variable.declaredType.items]

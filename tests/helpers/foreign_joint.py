@@ -16,29 +16,29 @@ Array = NDArray[np.float64]
 T = 1e-3  # [s]
 GEAR = 80.0
 TORQUE_CONSTANT = 0.09  # [N.m/A]
-INERTIA = 8e-5  # of the motor, on its axis [kg.m2]
+INERTIA = 8e-5  # inertia of the motor, on its axis [kg.m2]
 FRICTION = 8e-4  # viscous, on its axis [N.m.s/rad]
 COULOMB = 0.015  # on its axis [N.m]
 LINK = 0.35  # inertia of the link [kg.m2]
 GRAVITY = 4.0  # torque of the link at 90 degrees [N.m]
-STIFFNESS = 260.0  # of the series elastic joint [N.m/rad]
-PER_LEVER = 5200.0  # of the spring of the other joint: stiffness over lever squared [N/m]
-_GAIN, _DAMPING = 900.0, 40.0  # of the controller, behind the gear [N.m/rad, N.m.s/rad]
+STIFFNESS = 260.0  # stiffness of the series elastic joint [N.m/rad]
+PER_LEVER = 5200.0  # stiffness of the other joint over lever squared [N/m]
+_GAIN, _DAMPING = 900.0, 40.0  # gains of the controller [N.m/rad, N.m.s/rad]
 _MOTION = ((0.45, 0.4), (0.16, 1.3), (0.05, 3.1))  # amplitude [rad], frequency [Hz] of its target
 
 
 @dataclass(frozen=True)
 class Motion:
-    """What happened; all [size: samples], T apart."""
+    """The true signals; all [size: samples], T apart."""
 
     t: Array  # [s]
     theta: Array  # motor behind its gear [rad]
     q: Array  # link [rad]
-    velocity: Array  # of the motor, behind its gear [rad/s]
-    target: Array  # of the motor, behind its gear [rad]
-    tau: Array  # of the motor, on its axis [N.m]
+    velocity: Array  # velocity of the motor after its gear [rad/s]
+    target: Array  # set-point of the motor after its gear [rad]
+    tau: Array  # torque of the motor, on its axis [N.m]
     lever: Array  # [m]; 0 without one
-    tau_e: Array  # of the spring, as the deformation q - theta gives it [N.m]
+    tau_e: Array  # torque of the spring from q - theta [N.m]
     stiffness: Array  # [N.m/rad]
 
 

@@ -24,7 +24,7 @@ _PACKAGES = {
     "sha256sum": "coreutils",
     "unshare": "util-linux",
 }
-"""Of Debian, where it has another name than the program."""
+"""Name of the Debian package, if it differs from the name of the program."""
 _ALWAYS_THERE = {"c++", "cc", "g++", "gcc", "git", "sh", "wine64"}
 """In the run of the gate with a bare PATH; Wine is found in its own folder. CMake is there, but
 not make, which it uses if a test names no other build tool."""
@@ -68,7 +68,7 @@ def need_of_environment(name: str) -> str:
 def note_program(event: str, arguments: tuple[object, ...]) -> None:
     """Notes the test if it starts a program by its name alone, past `need`; see sys.addaudithook.
 
-    Without the program it fails, and the gate shows it.
+    Without the program the test fails, and the gate shows this failure.
     """
     if event == "subprocess.Popen":
         _note(str(arguments[0]))

@@ -1,4 +1,4 @@
-"""What a user does with the page of the site that runs the FMUs in the browser."""
+"""Actions of a user on the page that runs the FMUs in the browser."""
 
 import io
 from collections.abc import Iterator, Mapping, Sequence
@@ -34,7 +34,7 @@ def csv(columns: Mapping[str, NDArray[np.float64]]) -> str:
 
 
 class LivePage:
-    """The page, as soon as the FMUs are compiled. Its time stands still until `runs(True)`."""
+    """The page, as soon as the FMUs are compiled; its time stands still until `runs(True)`."""
 
     def __init__(self, page: Page) -> None:
         self.page = page
@@ -46,7 +46,7 @@ class LivePage:
         self.page.run("joint.run(arguments[0])", running)
 
     def text(self, name: str) -> str:
-        """What an element shows, by its id; nothing if it is hidden."""
+        """Text of an element, by its id; empty if it is hidden."""
         return str(self.page.driver.find_element("id", name).text)
 
     def sets(self, name: str, value: object) -> None:
@@ -60,7 +60,7 @@ class LivePage:
         return float(self.text("value-t").removesuffix(" s"))
 
     def arrays(self, script: str, *arguments: object) -> dict[str, NDArray[np.float64]]:
-        """What a script returns: arrays of numbers by name."""
+        """Result of a script: arrays of numbers by name."""
         found = f"Object.entries((() => {{ {script} }})())"
         lists = f"{found}.map(([name, array]) => [name, Array.from(array)])"
         result = self.page.run(

@@ -19,7 +19,7 @@ for _name, _text in contents(
     (PACKAGE / _name).write_bytes(_text)
 FILES = sorted(PACKAGE.rglob("*.mo"))
 NO_NOISE = "redeclare function drawNoise = Sigmahat.Plants.noNoise"
-"""For rumoca, which calls no C."""
+"""Replacements for rumoca, which calls no C."""
 
 
 def modification(**values: Any) -> str:
@@ -32,7 +32,7 @@ def modification(**values: Any) -> str:
 
 
 def compiled(text: str, model: str = "Test", package: Path = PACKAGE) -> rumoca.Model:
-    """A model that uses the package, compiled. It has as many equations as unknowns."""
+    """A model that uses the package, compiled. The model has as many equations as unknowns."""
     found = rumoca.Session(roots=[str(package)]).loads(text, model=model)
     assert found.structure().is_balanced
     return found

@@ -1,7 +1,7 @@
 """The estimator in numpy, written from the paper, with which the C code is compared.
 
-The formulas are those printed in the paper, also where the C code has another form: (8) with its
-integral I_tau and r(k), (14) and (25) with K and P - a K F'P. In doubles P would lose all its
+The formulas are as printed in the paper, even if the C code has another form: (8) with its integral
+I_tau and r(k), (14) and (25) with K and P - a K F'P. In doubles P would lose all its
 digits in that form. So all numbers have multiple precision (mpfr in arrays of dtype object), with
 many more DIGITS than cancel in the worst case. Inputs are doubles, which are taken as exact.
 

@@ -27,7 +27,7 @@ Array = NDArray[np.float64]
 
 SETTINGS = (0, 10, 25, 33, 35, 45)  # position of the support [mm]
 SAMPLE_PERIOD = 1.2e-3  # [s]
-DYNAMOMETER = 218 * 180 / math.pi  # its stiffness [N.m/rad]
+DYNAMOMETER = 218 * 180 / math.pi  # stiffness of the dynamometer [N.m/rad]
 N, M = 6, 3
 PARAMETERS: dict[str, Value] = {
     **{"samplePeriod": SAMPLE_PERIOD, "modality": "Sensor", "rls.n": N, "rls.m": M},
@@ -51,7 +51,7 @@ SPRING_ALONE = {**FILTERED_REGRESSION, **WITHOUT_MISFITS, "regression.memory": 0
 """FilteredRegression without the columns for misfits, and without their effect."""
 BIN = 5e-3  # width over which the measured curve is averaged [rad]
 POINTS = (-0.1, 0.1)  # where the stiffness is compared [rad]
-HALF_WIDTH = 0.05  # of the window in which the slope is taken, see docs/real-joint.md [rad]
+HALF_WIDTH = 0.05  # half width of the window for the slope [rad]
 
 
 @dataclass(frozen=True)
@@ -134,8 +134,8 @@ def replay(
 
 
 def coverage(measured: Sequence[Log], fit: Estimator) -> float:
-    """Share of the points every 0.01 rad at which the slope of the mean curve, within 0.02 rad, is
-    within 1.96 sigma_std of the estimate, when the logs are replayed a second time [%]."""
+    """Share of points, every 0.01 rad, with the slope of the mean curve (over +-0.02 rad) within
+    1.96 sigma_std of the estimate, in a second replay of the logs [%]."""
     found = fit.run(**inputs(measured))
     inside, first = [], 0
     for log in measured:

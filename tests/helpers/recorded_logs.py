@@ -109,7 +109,7 @@ def plain_log(rows: int = 2000) -> Columns:
 def write_log(
     columns: Mapping[str, NDArray[np.generic]], path: Path, configuration: str = ""
 ) -> Path:
-    """Writes a log in the format of the suffix; beside it the configuration, if one is given."""
+    """Writes a log in the format of the suffix, and next to it the configuration, if any."""
     if configuration:
         path.with_suffix(".toml").write_text(configuration)
     if path.suffix == ".csv":

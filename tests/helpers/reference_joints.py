@@ -1,7 +1,7 @@
-"""The AwAS solved by scipy: what the plants and the estimator are held to.
+"""The AwAS solved by scipy, as a reference for the plants and the estimator.
 
-It is (5) with (28)-(31), written from the paper, and shares nothing with the plants that are
-generated to C.
+The equations are (5) with (28)-(31), written from the paper. They share nothing with the plants
+that are generated to C.
 """
 
 import math
@@ -120,7 +120,7 @@ def paper_tau_c(t: Array | float) -> Array:
 def table1_recording() -> Recording:
     """Measurements of the run of Table I, 15001 samples at 1 kHz: r(0) = 70 mm, at rest.
 
-    With the encoders of the paper and the noise (32), (33).
+    Signals with the encoders of the paper and the noise (32), (33).
     """
     at_rest = np.array([0.0, 0.0, 0.030 / SCREW, 0.0, 0.0, 0.0])
     states = solution(awas, lambda t: (paper_tau(t), paper_tau_c(t), 0.0), at_rest, 15.0)

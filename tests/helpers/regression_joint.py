@@ -15,7 +15,7 @@ from reference_joints import SCREW, Array, flexibility_torque, round_to_counts, 
 T = 1e-3  # [s]
 GAMMA, B, D_THETA = 50.0, 2.3e-5, 1e-3
 STIFFNESS, RANGE = 140.0, 0.1  # of MisfitJoint
-SETTINGS = {  # for it, with the scale of the stiffness, prior.tau_e / range.phi, at its true value
+SETTINGS = {  # for MisfitJoint, with the true scale of the stiffness, prior.tau_e / range.phi
     **{"method": 2, "rls.n": 2, "rls.m": 1, "range.phi": RANGE, "prior.tau_e": STIFFNESS * RANGE},
     "prior.torque_gain": 0.0,
 }
@@ -46,7 +46,7 @@ def at_rest(z: Array) -> Array:
 
 @dataclass(frozen=True)
 class Joint:
-    """A joint with a lever arm as that of the AwAS, and what the model does not have.
+    """A joint with the lever arm of the AwAS, and effects that the model does not have.
 
     The motor data are the defaults of the estimator.
     """
@@ -59,19 +59,19 @@ class Joint:
     D_theta: float = D_THETA
     gamma: float = GAMMA
     tau_coulomb: float = 0.0
-    coulomb_velocity: float = 0.02  # at which the Coulomb friction is nearly whole [rad/s]
+    coulomb_velocity: float = 0.02  # velocity of nearly full Coulomb friction [rad/s]
     stiffness: Callable[[Array], Array] = np.ones_like  # over time [s], relative to the AwAS
-    counts: float = 40000.0  # per turn of the encoders; 0: no rounding
+    counts: float = 40000.0  # counts per turn of the encoders; 0: no rounding
     noise: float = 10**-2.5  # standard deviation of the motor torque [N.m]
     seed: int = 1
 
     bias: float = 0.0  # constant torque [N.m]
     load_friction: float = 0.0  # per flexibility torque [1]
-    delay: float = 0.0  # by which the torque is recorded late [s]
+    delay: float = 0.0  # delay of the recorded torque [s]
     eccentric: float = 0.0  # amplitude of the once-per-turn error of the link encoder [rad]
     damping: float = 0.0  # of the spring [N.m.s/rad]
     hysteresis: float = 0.0  # half the height of the loop [N.m]
-    hysteresis_width: float = 0.02 * RANGE  # from the middle of the loop to its end [rad]
+    hysteresis_width: float = 0.02 * RANGE  # half the width of the loop [rad]
     gap: float = 0.0  # half the dead zone [rad]
 
     @property

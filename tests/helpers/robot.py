@@ -33,7 +33,7 @@ AXES = {
 SIGMA, STD = "estimate.sigma [N.m/rad]", "estimate.sigma_std [N.m/rad]"
 
 DELAY = 0.0031
-"""Of the link's encoder behind the motor's [s], as `check` proposes it for axis 3 in both runs."""
+"""Delay of the link's encoder [s], as `check` proposes it for axis 3 in both runs."""
 
 CONFIGURATION = """\
 [time]
@@ -66,7 +66,7 @@ rls.m = 1
 class Estimated:
     table: pa.Table  # what `sigmahat estimate` wrote for each sample
     stiffness: float  # at the end [N.m/rad]
-    std: float  # its standard deviation [N.m/rad]
+    std: float  # standard deviation of the stiffness [N.m/rad]
     confident: float  # share of the samples [1]
 
 
@@ -74,9 +74,9 @@ class Estimated:
 class Axis:
     number: int
     estimated: Sequence[Estimated]
-    """From run a, from run b, and from b after a."""
+    """Results from run a, from run b, and from b after a."""
     validated: Sequence[dict[str, Any]]
-    """What `sigmahat validate --json` says of run b with a, and of a with b."""
+    """Output of `sigmahat validate --json` for run b with a, and for a with b."""
 
 
 def study(number: int, data: Path, place: Path) -> Axis:

@@ -50,7 +50,7 @@ prior.tau_e = 30
 
 
 def messages(samples: int, seed: int = 1) -> list[dict[str, float | int]]:
-    """Of a joint with 400 N.m/rad that moves a load, at T."""
+    """Samples of a joint with 400 N.m/rad that moves a load, T apart."""
     noise = np.random.default_rng(seed)
     t = T * np.arange(samples)
     theta = 0.8 * np.sin(3 * t) + 0.2 * np.sin(11 * t)
@@ -132,7 +132,7 @@ def running(
 
 
 def ended(process: subprocess.Popen[str], number: int = signal.SIGINT) -> tuple[str, str]:
-    """What the command prints after a signal."""
+    """Output of the command after a signal."""
     process.send_signal(number)
     out, err = process.communicate(timeout=60)
     assert process.returncode == 0, err

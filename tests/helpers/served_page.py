@@ -40,7 +40,7 @@ class Served:
         self.address = process.stdout.readline().strip()
 
     def interrupt(self) -> tuple[int, str, str]:
-        """Ctrl-C. Returns exit status, and what it said since it told its address."""
+        """Ctrl-C. Returns the exit status, and the output after the address."""
         self.process.send_signal(signal.SIGINT)
         status = self.process.wait(timeout=_LONGEST)
         # Not by communicate, which does not know of lines that were read before.
@@ -68,7 +68,7 @@ def served(*arguments: str, folder: Path, browser: str = "true") -> Iterator[Ser
 
 
 class Hand:
-    """What a user does in a window, by the names of the inputs."""
+    """Actions of a user in a window, by the names of the inputs."""
 
     def __init__(self, page: Page) -> None:
         self.page = page
@@ -82,7 +82,7 @@ class Hand:
         return str(self.page.run("return arguments[0].value", self.find(name)))
 
     def types(self, name: str, text: str) -> None:
-        """Types over what is there, and leaves the field."""
+        """Replaces the text, and leaves the field."""
         self.find(name).send_keys(Keys.CONTROL, "a", Keys.NULL, text, Keys.TAB)
 
     def chooses(self, name: str, item: str) -> None:

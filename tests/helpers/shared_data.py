@@ -1,4 +1,4 @@
-"""Where recorded data are that are not in the repository."""
+"""Paths of recorded data that are not in the repository."""
 
 import os
 from pathlib import Path

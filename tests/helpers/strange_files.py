@@ -37,7 +37,7 @@ def damaged_logs(draw: st.DrawFn) -> bytes:
     """A log with some bytes changed, cut, doubled or put in."""
     data = bytearray(_WHOLE[draw(st.sampled_from(sorted(_WHOLE)))])
     for _ in range(draw(st.integers(1, 3))):
-        # Where the formats say how much follows: at the beginning and at the end.
+        # Places at which the formats have lengths: the beginning and the end.
         near = draw(st.integers(0, min(2000, len(data) - 1))) if data else 0
         place = draw(st.sampled_from([near, max(0, len(data) - 1 - near)]))
         sizes = st.sampled_from([b"\xff\xff\xff\x7f", b"\0\0\0\x10"])
@@ -89,7 +89,7 @@ Trial = tuple[str, dict[str, bytes]]
 
 
 def complaint_of(trial: Trial) -> str | None:
-    """What a command did that no file may make it do; its folder is removed."""
+    """A forbidden action of a command that a file has caused; its folder is removed."""
     command, files = trial
     with TemporaryDirectory() as folder:
         for name, content in files.items():

@@ -114,4 +114,4 @@ def test_a_file_says_where_it_is_from(results: Path, sheet: Sheet) -> None:
 def test_a_sheet_without_motion_is_refused(sheet: Sheet, shell: Shell) -> None:
     sheet["polynomial"]["phi"] = None
     Path("joint.json").write_text(json.dumps(sheet))
-    assert "expected the sheet of a joint that moved" in shell.refused("export . --to mjcf")
+    assert "expected data of a joint that moved" in shell.refused("export . --to mjcf")

@@ -143,14 +143,14 @@ def test_what_is_misused_is_named_and_changes_nothing(z: Samples) -> None:
 
     refused(run, theta, q, message="modality Residual needs tau")
     refused(run, theta, q[1:], tau, message=r"theta \(3000,\), q \(2999,\)")
-    refused(run, 0.0, 0.0, 0.0, message=r"one shape.*\(\)")
+    refused(run, 0.0, 0.0, 0.0, message=r"equal shapes.*\(\)")
     expected = run(**z)["sigma"]
     refused(run, *np.zeros((3, 2, 5)), message=r"one joint\(s\), got 2")
     refused(tick, np.zeros(3), 0.0, 0.0, message=r"expected samples of one joint\(s\), got 3")
     refused(tick, 0.0, 0.0, message="modality Residual needs tau")
-    refused(tick, np.zeros((2, 3)), 0.0, 0.0, message="expected numbers or arrays of one shape")
+    refused(tick, np.zeros((2, 3)), 0.0, 0.0, message="expected numbers, or arrays of shape")
     refused(run, *np.zeros((3, 0, 5)), message="one joint or more, got none")
-    refused(tune, {"motor.B": 1e-5, "rls.n": 3}, message=r"rls\.n is fixed")
+    refused(tune, {"motor.B": 1e-5, "rls.n": 3}, message=r"rls\.n cannot be changed")
     refused(tune, {"motor.B": 1e-5, "motor.gamma": 0.0}, message=r"motor\.gamma: expected .*got 0")
     estimator.reset()
     np.testing.assert_array_equal(run(**z)["sigma"], expected)

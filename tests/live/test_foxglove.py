@@ -27,7 +27,7 @@ def replayed(
 
 
 class Client:
-    """Of the protocol: channels by topic, and the messages of one of them."""
+    """Parts of the protocol: channels by topic, and the messages of one channel."""
 
     def __init__(self, port: int) -> None:
         address = f"ws://127.0.0.1:{port}"
@@ -103,7 +103,7 @@ const done = arguments[0];
 document.addEventListener("securitypolicyviolation", (event) => done(event.effectiveDirective));
 fetch("http://127.0.0.1:9/").catch(() => {});
 """
-"""What the browser says of an attempt to send something."""
+"""Message of the browser after an attempt to send something."""
 
 
 @pytest.mark.parametrize("asked", ["?ws=http://127.0.0.1:1", "?ws=nothing", "?ws=", ""])

@@ -1,4 +1,4 @@
-"""`sigmahat live` as a program: sockets, signals, and what it leaves behind."""
+"""`sigmahat live` as a program: sockets, signals, and its files."""
 
 import json
 import random
@@ -41,7 +41,7 @@ def send(port: int, datagrams: Sequence[bytes]) -> None:
 
 @needs_signals
 def test_datagrams_in_and_out_and_any_others_between_them(tmp_path: Path) -> None:
-    """THEN estimates and recording are those of the good ones alone."""
+    """THEN estimates and recording contain only the good messages."""
     noise = random.Random(7)
     port, viewer = free_port(), Viewer()
     alone = messages(1000)

@@ -18,7 +18,7 @@ KNEE = KNEE_FILE.read_text(encoding="utf-8")
 KNEE_FIELDS = {"theta per": 4096, "theta gear": 100, "tau per": 0.1, "motor.gamma": ""}
 RECORD = ["sigma", "sigma_std", "doubt"]
 ANSWER = r"Stiffness, with 95 % band: \d+\.\d ± \d\d\.\d N·m/rad at 0 rad \(confident\)\. "
-"""How the answer to KNEE begins."""
+"""Beginning of the result for KNEE."""
 _CURVES = """
 return Object.fromEntries(log.run.curves().flatMap((curve, i) => Object.entries(curve)
   .map(([name, values]) => [`${name} ${i}`, values.length ? values : [values]])));
@@ -39,7 +39,7 @@ def page(site: Path) -> Iterator[LivePage]:
 
 
 def parameters(page: LivePage) -> dict[str, Value]:
-    """What the page gives to the estimator, as `sigmahat.Estimator` takes it."""
+    """Data that the page gives to the estimator, in the form for `sigmahat.Estimator`."""
     start = dict(page.page.run("return log.starts(log.read())"))
     return {**start, "method": "FilteredRegression", "modality": "Residual"}
 

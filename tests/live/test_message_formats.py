@@ -1,4 +1,4 @@
-"""Messages: what they mean, and what is no message."""
+"""Valid messages with their values, and invalid messages."""
 
 import math
 

@@ -1,6 +1,6 @@
 """A robot of another implementation of ROS 2 and DDS: RustDDS with ros2-client.
 
-Both run in a network of their own, whose loopback has multicast, by which they find each other.
+Robot and estimator run in a separate network. They find each other by multicast on its loopback.
 """
 
 import subprocess

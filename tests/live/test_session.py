@@ -1,4 +1,4 @@
-"""What is estimated on line is what `estimate` finds in the recording, to the last bit."""
+"""The estimates on line equal the results of `estimate` from the recording, to the last bit."""
 
 import json
 import math
@@ -151,7 +151,7 @@ def test_a_topic_that_dies_does_not_stop_the_others(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("again_at", [-3.0, 0.0, 60.0])
 def test_a_sender_that_starts_again_is_noticed(again_at: float, tmp_path: Path) -> None:
-    """It begins a recording of its own, with which the estimator goes on."""
+    """The sender begins another recording, with which the estimator goes on."""
     first, second = messages(1000, 1), messages(1000, 2)
     for each in second:
         each["t"] += again_at
@@ -175,7 +175,7 @@ def test_what_was_learned_goes_on(tmp_path: Path) -> None:
 
 
 def test_many_joints_in_one_message(tmp_path: Path) -> None:
-    """Each of them as if it were alone."""
+    """The result of each joint is as if it were alone."""
     names = [f"a{i}" for i in range(1, 8)]
     several = of_joints(names, [f"{name}/" for name in names])
     each_joint = [messages(400, seed) for seed in range(7)]

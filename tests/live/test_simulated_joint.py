@@ -31,7 +31,7 @@ return count;
 """
 
 
-WITHIN = 1e-12  # of the range of each output; what the project promises
+WITHIN = 1e-12  # error over the range of each output
 _SIMULATE = """
 const [method, plant, estimator, count] = given;
 joint.form.elements.method.value = METHODS[method];
@@ -104,7 +104,7 @@ def test_time_passes_pauses_and_starts_again(page: LivePage) -> None:
 
 
 def test_wrong_friction_misleads_paper2011_and_not_filtered_regression(page: LivePage) -> None:
-    """And only the method that claims a band gets one."""
+    """And only the method with an interval gets a band."""
     errors = {}
     for method, claims in (("Paper2011", False), ("FilteredRegression", True)):
         page.page.run("joint.form.elements.method.value = METHODS[arguments[0]]", method)
@@ -120,7 +120,7 @@ def test_wrong_friction_misleads_paper2011_and_not_filtered_regression(page: Liv
 
 
 def test_the_band_holds_without_noise(page: LivePage) -> None:
-    """The estimator is told that there is next to none; it was once told that of the paper."""
+    """The estimator assumes almost no noise; it once assumed the noise of the paper."""
     page.page.run("joint.form.elements.method.value = METHODS.FilteredRegression")
     for noise in (0, 1):
         page.sets("noise", noise)

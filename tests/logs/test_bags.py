@@ -74,4 +74,4 @@ def test_one_mcap_file_whole_and_cut_in_the_middle(shell: Shell) -> None:
     assert 'column = "/joint_states.position[motor]"' in text
     assert 'time = "/drive/torque.time"' in text
     file.write_bytes(file.read_bytes()[: file.stat().st_size // 2])
-    assert "not a whole ROS 2 bag" in shell.refused("estimate bag")
+    assert "incomplete ROS 2 bag" in shell.refused("estimate bag")

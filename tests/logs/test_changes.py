@@ -34,7 +34,7 @@ def test_a_step_has_its_time_its_size_and_its_mark(shell: Shell) -> None:
         marks = np.array(page.run(MARKS))
         assert len(marks) > 3 and np.allclose(marks, change["t [s]"])
         text = page.run("return document.body.textContent")
-    assert words in text and "Dotted lines: changes of the stiffness" in text
+    assert words in text and "Dotted lines mark changes of the stiffness" in text
 
 
 def test_the_size_needs_a_confident_estimate_before_and_after() -> None:

@@ -116,11 +116,11 @@ def test_what_was_learned_from_is_said_and_handed_on(learned: Shell) -> None:
     ("old", "new", "words"),
     [
         ("motor.B = 1.84e-5", "motor.B = 2e-5", "motor.B = 2e-05, but"),
-        ("samplePeriod = 0.001", "samplePeriod = 0.002", "was learned with 0.001"),
+        ("samplePeriod = 0.001", "samplePeriod = 0.002", "was written with 0.001"),
         ("rls.n = 3", "rls.n = 3\nprior.delay = 0.001", "prior.delay = 0.001, but"),
         ("rls.n = 3", 'rls.n = 3\nrls."eta_0[0,1]" = 1.0', "rls.eta_0[0,1] = 1.0, but"),
         ("rls.n = 3", "rls.n = 3\ntorque.held = true", "torque.held = 1, but"),
-        ('"FilteredRegression"', '"Paper2011"', "was learned with FilteredRegression"),
+        ('"FilteredRegression"', '"Paper2011"', "was written with FilteredRegression"),
     ],
 )
 def test_another_configuration_is_refused(old: str, new: str, words: str, learned: Shell) -> None:
@@ -130,7 +130,7 @@ def test_another_configuration_is_refused(old: str, new: str, words: str, learne
     line = learned.refused(f"{SECOND} --start-from first")
     assert line.startswith("sigmahat: error: joint.toml: ")
     assert words in line
-    assert "first/state.json" in line and "contains its parameters: use these" in line
+    assert "first/state.json" in line and "both must have the same parameters" in line
 
 
 State = dict[str, Any]

@@ -106,6 +106,6 @@ def test_a_slow_log_and_one_with_a_pause(monkeypatch: pytest.MonkeyPatch) -> Non
     t[9000:] += 500
     assert ticks(t) == rows + 500_000
     t[9000:] += 5_000
-    words = r"expected at most 1020000; the longest gap is 5500 s: split the log at the pause"
+    words = r"expected at most 1020000; the longest gap is 5500 s: split the log there"
     with pytest.raises(LogError, match=words):
         ticks(t)

@@ -110,7 +110,7 @@ def test_the_program_of_the_page_on_fmus_works_with_both_versions_of_fmi(
         stiffness = names["result"]["sigma"][-1]
         # The log comes from a simulated joint with a stiffness of 1000 N.m/rad.
         assert stiffness == pytest.approx(1000.0, abs=1.0)
-        assert f"It prints {stiffness:.1f}:" in text
+        assert f"The program prints {stiffness:.1f}," in text
 
 
 def test_the_code_on_the_page_of_python_works() -> None:

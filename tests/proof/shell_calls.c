@@ -34,10 +34,10 @@ static size_t any_number(size_t n, int way)
                       : Frama_C_size_t_interval(n + 1, SIZE_MAX);
 }
 
-/* Written by helpers/fmi_functions.py from the header of the standard. call_any(which) calls one of CALLS
- * functions of an instance, with any arguments that FMI allows, and NULL. access_any(which, vr, n, way)
- * calls one of ACCESSES functions of variables, with n references, and arrays of exactly the announced
- * length.
+/* The script helpers/fmi_functions.py writes two functions from the header of the standard. The function
+ * call_any(which) calls one of CALLS functions of an instance, with any arguments that FMI allows, and NULL. The
+ * function access_any(which, vr, n, way) calls one of ACCESSES functions of variables, with n references, and arrays
+ * of exactly the announced length.
  */
 #include "calls.h"
 

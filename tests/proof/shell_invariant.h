@@ -1,8 +1,7 @@
-/* What holds for an instance between any two calls of its importer.
+/* The invariant of an instance between any two calls of its importer.
  *
- * It is in one of 16 courses, its pointers are those of its creation, parameters that need no check
- * have passed it, and an estimator that the next step uses was made by its own functions or has passed
- * its check.
+ * The instance is in one of 16 courses, and its pointers have not changed since its creation. Parameters that need no
+ * check have passed it. An estimator that the next step uses was made by its own functions, or has passed its check.
  */
 #ifndef SHELL_INVARIANT_H
 #define SHELL_INVARIANT_H
@@ -11,8 +10,8 @@
 
 #include "shell_importer.h"
 
-/* What replaces the parts of a model (shell_library.c, shell_equations.c) marks parameters and states
- * that may be used, and proves the marks.
+/* The replacements of a model's parts (shell_library.c, shell_equations.c) mark parameters and states that may be
+ * used, and prove the marks.
  */
 void mark_checked(MODEL *model);
 void mark_sound(MODEL *model);
@@ -89,7 +88,7 @@ static void any_instance(course here, sh_importer importer)
     instance.model = &model;
 }
 
-/* What must hold behind a call. It is compared in C: Eva uses the results of a function again where all
+/* The condition after a call. It is compared in C: Eva uses the results of a function again where all
  * is the same that its code reads, and an assertion is no code.
  */
 static void expect(sh_importer importer)

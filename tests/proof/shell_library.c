@@ -1,5 +1,5 @@
-/* In place of c/: what its functions may do at most. A state or parameters that they accept carry a
- * mark, and the functions that need it ask for it. Part 1 proves the functions themselves.
+/* Replaces c/: its functions do everything that the functions of c/ may do. A state or parameters that they accept
+ * carry a mark, and the functions that need it ask for it. Part 1 proves the functions themselves.
  *
  * Marks: p->method is one of the methods only after sh_parameters_check; estimator->started is 0 or
  * 1 only after sh_estimator_start or sh_estimator_check. Both are necessary conditions of the real

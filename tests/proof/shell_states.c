@@ -18,7 +18,7 @@ static void of_another_size(size_t length, size_t least, size_t most)
     //@ assert refused: state == \null;
 }
 
-/* A state of the right size. Where its simulation stands is given; the rest may be anything. */
+/* A state of the right size. The place in its simulation is given; the other bytes may have any value. */
 static void *block_of(unsigned state, int outputs_stale)
 {
     return with_course(any_bytes(SIZE), state, outputs_stale);

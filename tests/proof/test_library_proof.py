@@ -1,7 +1,7 @@
 """No run-time error is possible in c/: shown by Frama-C Eva for all inputs.
 
-A tick is analysed with contracts in place of the functions that work on triangles (contracts.h), in
-a loop that is analysed to its fixpoint: so the result holds for any number of ticks. The functions
+Contracts (contracts.h) replace the functions that work on triangles. A tick is analysed in a loop
+to its fixpoint, so the result holds for any number of ticks. The functions
 themselves are analysed for each number of columns, in arrays that are just large enough.
 
 The preset `complete` runs all of it; the tests of the gate run some.
@@ -91,7 +91,7 @@ def with_guards(folder: Path) -> Path:
 
 def assert_proven(analysis: Analysis, least_coverage: int) -> None:
     assert analysis.alarms == ()
-    # What is not reached is not proven either: an analysis that ends early finds nothing.
+    # Code that is not reached is not proven: an analysis that ends early finds nothing.
     assert analysis.coverage >= least_coverage and analysis.proven >= 1, analysis.text
 
 

@@ -19,7 +19,7 @@ PAPER2011, REGRESSION = 1, 2
 
 
 def check_outputs(record: NDArray[np.void], largest_a: float, confidence: float) -> None:
-    """What holds for the outputs of every tick."""
+    """The bounds of the outputs of every tick."""
     for name in record.dtype.names or ():
         if name in ("sigma_std", "tau_e_std"):  # infinite if their squares overflow, never NaN
             assert np.all(record[name] >= 0), name

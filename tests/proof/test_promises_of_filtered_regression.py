@@ -68,8 +68,8 @@ def test_process_noise_leaves_information_above_zero(c: Library, data: st.DataOb
 @often
 @given(data=st.data())
 def test_motion_sign(c: Library, data: st.DataObject) -> None:
-    """The sign is at most 1 while the motor goes on, below or at 2 where it reverses within a
-    sample, and else at most what was reported since the last count, and 1 more."""
+    """The sign is at most 1 while the motor goes on, and at most 2 if it reverses within a sample.
+    Else it is at most 1 more than the sum reported since the last count."""
     count, slow = data.draw(magnitudes(0, 1e12)), data.draw(magnitudes(1e-24, 1e12))
     motion = c.new("sh_motion_sign")
     c.lib.sh_motion_sign_start(motion, data.draw(signed))
@@ -105,7 +105,7 @@ def test_the_noise_of_the_filter_is_finite_at_every_bandwidth(
     assert all(0 <= gain[0] < math.inf for gain in gains)
 
 
-# What overflowed, mostly in single precision
+# Cases that overflowed, mostly in single precision
 
 
 def test_a_stiff_joint_has_finite_coefficients(c: Library) -> None:
@@ -126,9 +126,9 @@ def test_a_weight_whose_square_overflows_leaves_the_blocks_finite(c: Library) ->
 
 
 def test_a_stiffness_that_is_too_large_for_the_next_row_does_not_block_all_rows(c: Library) -> None:
-    """GIVEN a sensor that gives 1e12 N.m, from which a stiffness of 1e15 N.m/rad follows in single
-    precision, WHEN the motor data are used instead, whose column of the encoder is multiplied by
-    the stiffness, THEN at most one sample is skipped."""
+    """GIVEN a sensor that gives 1e12 N.m, and so a stiffness of 1e15 N.m/rad in single precision,
+    WHEN the motor data are used instead, THEN at most one sample is skipped. The column of the
+    motor encoder is multiplied by the stiffness."""
     values = {"method": 2, "modality": 2, "rls.n": 8, "rls.m": 1, "prior.eccentric_motor": 1e6}
     estimator, k = Estimator(c, values), np.arange(200)
     z = np.zeros((200, 5))

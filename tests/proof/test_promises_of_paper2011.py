@@ -73,9 +73,9 @@ def test_no_direction_gets_less_certain(c: Library, data: st.DataObject) -> None
 def test_columns_that_cannot_be_told_apart_do_not_overflow(
     c: Library, phi: float, set_point: float
 ) -> None:
-    """GIVEN a set-point that does not change, so that the columns of its powers are multiples of
-    each other and D underflows for them, WHEN hundreds of samples are taken, THEN no entry of U is
-    larger than the square root of P_0 over the smallest D > 0, and usual samples are taken."""
+    """GIVEN a constant set-point: the columns of its powers are proportional, and D underflows for
+    them. WHEN hundreds of samples are taken, THEN no entry of U is larger than the square root of
+    P_0 over the smallest D > 0, and usual samples are taken."""
     P_0, rng = 1e20, np.random.default_rng(1)
     rls = c.new("sh_least_squares")
     c.lib.sh_least_squares_start(rls, 10, c.ffi.NULL, P_0)

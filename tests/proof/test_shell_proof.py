@@ -66,7 +66,7 @@ APART_IN_A_PLANT = [
     *("sh_radau_integrate:0", "take:0", "sh_noise_normal:0", "step:30", "fmin:10", "fmax:10")
 ]
 
-# Of an instance when a call begins.
+# States of an instance when a call begins.
 APART_BY = [f"//@ dynamic_split instance.{member};" for member in ("parameters_unchecked", "state")]
 
 slow = pytest.mark.slow("the analysis of a shell")
@@ -118,7 +118,7 @@ def alarms_of(
 def alarms_of_calls(
     build: Path, version: str, folder: Path, *, shell: Path = SHELL
 ) -> tuple[str, ...]:
-    """Of every call in a version of FMI, whose sources keep no logger of the importer."""
+    """Proof of every call in a version of FMI, whose sources keep no logger of the importer."""
     copies = []
     for source in sorted((SOURCES / version).glob("*.c")):
         copies.append(folder / source.name)

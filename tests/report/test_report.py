@@ -186,14 +186,14 @@ def test_fewer_points_of_a_long_signal_keep_every_peak(samples: int) -> None:
 @pytest.mark.parametrize(
     ("files", "words"),
     [
-        (None, "no result of `sigmahat reproduce`, `estimate` or `sweep` (expected one of"),
-        ({}, "no result of"),
-        ({"runs.sqlite": b""}, "a sweep that is not complete; run its command again"),
-        ({"sweep.parquet": b"PAR1 cut off"}, "not the table of a sweep; run the sweep again"),
+        (None, "expected results of `sigmahat reproduce`, `estimate` or `sweep` (one of the files"),
+        ({}, "expected results of"),
+        ({"runs.sqlite": b""}, "incomplete sweep; run the command of the sweep again"),
+        ({"sweep.parquet": b"PAR1 cut off"}, "expected the table of a sweep; run the sweep again"),
         ({"estimate.parquet": b"PAR1 cut off"}, "parquet: damaged; run `sigmahat estimate` again"),
         ({"estimate.csv": b""}, "csv: not readable as CSV; run `sigmahat estimate` again"),
-        ({"estimate.csv": b"t,x\n1,2\n"}, "csv: no table of `sigmahat estimate`"),
-        ({"table.csv": b"estimation,seeds\nRESIDUAL,1\n"}, "no result of `sigmahat reproduce`"),
+        ({"estimate.csv": b"t,x\n1,2\n"}, "csv: expected a table of `sigmahat estimate`"),
+        ({"table.csv": b"estimation,seeds\nRESIDUAL,1\n"}, "results of `sigmahat reproduce`"),
         ({"table.csv": b"a,b\n1\n"}, "not readable as CSV"),
     ],
 )

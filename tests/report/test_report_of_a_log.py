@@ -103,7 +103,7 @@ def test_limits_keep_what_belongs_to_the_signal() -> None:
     [
         ("estimate.json", "{", "cut off|no JSON|something else"),
         ("joint.json", None, "name the folder or the joint.json"),
-        (CURVE, "a,b\n1,2\n", "expected the curve that"),
+        (CURVE, "a,b\n1,2\n", "expected a stiffness curve"),
         ("estimate.points.csv", "a,b\n1,2\n", "no numbers in column"),
         ("estimate.json", '{"format": "x"}', "expected the estimate.json"),
     ],

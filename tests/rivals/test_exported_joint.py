@@ -45,7 +45,7 @@ def drawn(seed: int) -> Joint:
 def motion(
     joint: Joint, frequencies: tuple[float, ...], seconds: float, seed: int
 ) -> dict[str, Array]:
-    """What a controller of the position makes of it."""
+    """The motion of the joint under a position controller."""
     t = SAMPLE_PERIOD * np.arange(round(seconds / SAMPLE_PERIOD), dtype=np.float64)
     waves = zip((0.6, 0.25, 0.1), frequencies, strict=True)
     target = np.sum([a * np.sin(2 * np.pi * f * t) for a, f in waves], axis=0)
@@ -81,8 +81,8 @@ def estimated(joint: Joint, folder: Path) -> Path:
 
 
 def within_band(model_file: Path, log: dict[str, Array]) -> tuple[float, float]:
-    """Share of a run in which its torque lies between those of the ends of the ranges; and half of
-    that band over the RMS of the torque.
+    """Share of a run in which the torque is in the band from both ends of the ranges; and half of
+    this band over the RMS of the torque.
     """
     import mujoco
 

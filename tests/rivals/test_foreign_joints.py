@@ -1,4 +1,4 @@
-"""The joints in MuJoCo are what their parameters say, and their logs what they do.
+"""The joints in MuJoCo fit their parameters, and the logs fit the joints.
 
 The seeds of the comparison stay unused here: these are others.
 """

@@ -56,7 +56,7 @@ def short_log() -> JointLog:
 
 
 def estimate(stiffness: list[float], std: list[float], confident: list[bool]) -> Estimate:
-    """What is said of the last four samples; before that it is nonsense."""
+    """Estimates for the last four samples; earlier estimates are meaningless."""
     return Estimate(
         np.array([np.nan] * 4 + stiffness),
         np.array([np.nan] * 4 + std),

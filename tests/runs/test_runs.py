@@ -48,7 +48,7 @@ def test_the_first_exception_ends_them_all() -> None:
 @pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="no signal that ends a process at once")
 def test_a_process_that_is_ended_from_outside() -> None:
     jobs: list[Callable[[], int]] = [die, partial(after, 0.0, 1)]
-    with pytest.raises(WorkersLostError, match="a process was ended from outside"):
+    with pytest.raises(WorkersLostError, match="another program ended a worker process"):
         run_all(jobs, processes=1)
 
 

@@ -123,8 +123,8 @@ def test_the_scheduler_is_lost(
     assert (process.returncode, output) == (2, "")
     (line,) = errors.splitlines()
     assert line == (
-        f"sigmahat: error: lost the connection to the scheduler at {address}; "
-        "run the command again for what is left"
+        f"sigmahat: error: lost connection to the Dask scheduler at {address}; "
+        "run the command again for the missing runs"
     )
     assert 3 <= len(records(out)) < 200
 

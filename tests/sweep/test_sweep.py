@@ -158,4 +158,4 @@ def test_runs_that_fail_are_reported(shell: Shell) -> None:
     assert [row["failure"] is not None for row in table] == negative
     assert [bool(np.isnan(row["mse [(N.m/rad)2]"])) for row in table] == negative
     first = next(row["failure"] for row in table if row["failure"])
-    assert f"failed, the first with: {first}" in said
+    assert f"failed; message of the first: {first}" in said

@@ -24,7 +24,7 @@ class Change:
     value: Proposal
     factor: float
     fits_any: bool = False
-    """Whether the value was computed from the slope of the log, so that any slope fits."""
+    """Whether the value was computed from the slope in the log, so that any slope fits."""
 
     @property
     def on_theta(self) -> float:

@@ -23,7 +23,7 @@ from sigmahat.logs.log import Log, LogError
 from sigmahat.logs.replay import parameters, play
 
 _INERTIA = (Kind.INERTIA, Kind.TORQUE_SCALE)
-_MISFIT = 3.0  # of the model; unmodelled effects of real joints cause up to about 2
+_MISFIT = 3.0  # misfit of the model; effects of real joints cause up to about 2
 _NOISE = 3.0  # ratio of standard deviations, measured to configured
 _LEARNED = 0.5
 _DOUBTED = 0.5  # fraction of the second half
@@ -114,9 +114,9 @@ def _swapped(seen: View) -> list[Finding]:
 
 
 def _tried(seen: View, finding: Finding) -> Finding:
-    """The finding with the value, of those proposed, after which least is left to find.
+    """The finding with the one proposed value that leaves the fewest findings.
 
-    Without a value if none removes the finding.
+    It gets no value if no proposed value removes the finding.
     """
     if finding.severity is not Severity.WRONG or finding.proposed is None:
         return finding

@@ -21,8 +21,8 @@ _OFTEN = 0.01  # fraction of all samples
 _SAME = 0.001  # relative difference of the logarithm of a ratio from the one of two units
 _LEAST = 20  # samples
 _SPIKE, _UNUSUAL, _ALONE = 0.1, 20.0, 5.0
-"""A spike: the least distance from the neighbours over the range, or over the usual distance and
-the step of the encoder; and over the distance of the neighbours from each other."""
+"""Limits of a spike. Its distance from both neighbours counts over the range, over the usual
+distance and the encoder step, and over the distance between the neighbours."""
 _SMOOTH = 0.01  # least distance over the range, in place of the step where there is none
 _FEW = 50  # with fewer distinct values, the torque is a series of steps
 

@@ -16,7 +16,7 @@ from sigmahat.identification.quantities import WIDE
 from sigmahat.identification.regression import MOTOR
 from sigmahat.logs.units import scale
 
-_MATTERS = 0.05  # of the covered deformation: a smaller error of its zero is left to prior.bias
+_MATTERS = 0.05  # share of the covered deformation; prior.bias covers smaller errors of zero
 _STD = 3.0  # a prior contradicts the log beyond this number of standard deviations
 
 
@@ -46,8 +46,8 @@ def dynamics(here: Relation) -> Iterator[Finding]:
 
 
 def _delays(seen: View, found: Fitted) -> Iterator[Finding]:
-    """A delay of the torque, or between the encoders. A late link also looks like an early torque,
-    and a late torque like a link that is early."""
+    """A delay of the torque, or between the encoders. A late link position also looks like an early
+    torque, and a late torque like an early position."""
     late, lag = _late(seen, found), _encoder_lag(seen, found)
     if late is not None and (lag is None or (late[0].measured > 0 and late[1] < lag[1])):
         yield late[0]
@@ -55,7 +55,7 @@ def _delays(seen: View, found: Fitted) -> Iterator[Finding]:
         yield lag[0]
 
 
-_Delay = tuple[Finding, float]  # and the sum of the squared errors without the delay
+_Delay = tuple[Finding, float]  # finding, and sum of squared errors without delay
 
 
 def _sign(seen: View, found: Fitted) -> Finding | None:
@@ -152,10 +152,10 @@ def _late(seen: View, found: Fitted) -> _Delay | None:
 
 
 def _encoder_lag(seen: View, found: Fitted) -> _Delay | None:
-    """A friction below 0, as encoders that are read at different times cause.
+    """A friction below 0, as it results if the encoders are read at different times.
 
-    It is below 0 with friction of another form than the model's, too. So without the lag, the
-    equation must fit better: much better, unless the friction below 0 already explains much.
+    Friction of another form than in the model can also give a value below 0. So without the lag,
+    the equation must fit better: much better, unless the negative friction explains much.
     """
     value, half = found.linear.value, found.linear.half_width
     if not value["D_theta"] + half["D_theta"] < 0:

@@ -21,9 +21,9 @@ from sigmahat.logs.log import Array
 LINEAR = "eta[0,0]"  # the column of the linear spring in a symmetric polynomial
 _SLOWEST = 0.1  # [s] between ticks: a slower log does not show the motion of a joint
 _ORDERS = 3
-_PARTS = 8  # of a log, in each of which a spring may be another one
+_PARTS = 8  # number of parts of a log; each may have another spring
 _SPARE = 6  # blocks of a part beyond its columns
-_STEPS = 4  # of Newton's method for the delay
+_STEPS = 4  # number of steps of Newton's method for the delay
 LONGEST = 0.1  # largest delay [s]
 _BETTER = 0.7
 """Largest ratio of the squared errors, after to before, if a change explains the log. Significance
@@ -49,7 +49,7 @@ def fitted(seen: View, f_0: float | None = None) -> Fitted | None:
     f_0  low pass of the equations [Hz]; None: as identify chooses it
 
     None without data, if the sample period is too long for the motion of a joint, or if the torque
-    is only noise, as that of a motor without current.
+    is only noise, as without current.
     """
     if seen.T > _SLOWEST or all(is_only_noise(piece.tau) for piece in seen.pieces):
         return None
@@ -77,7 +77,7 @@ class Corrected:
 
 
 def delay(seen: View, form: Form) -> Corrected | None:
-    """How late the torque is [s]; None if no value is found.
+    """Delay of the torque [s]; None if no value is found.
 
     Newton's method: each step shifts the torque by the delay found, so the coefficient of the slope
     tends to 0. So neither noise of the slope nor curvature of the torque biases the result.

@@ -1,13 +1,13 @@
-"""How q follows theta: their slope is 1, unless a sign, a unit, a gear or an encoder is wrong.
+"""How q follows theta: the slope is 1, unless a sign, a unit, a gear or an encoder is wrong.
 
 In slow motion the link follows its motor. Near the resonance the link does not, nor if the link or
-the motor is held. So a slope alone is no proof: with the scale that the slope proposes, the motor
-equation must fit the torque as well as before, or better.
+the motor is held. So a slope alone is no proof. With the scale from the slope, the motor equation
+must fit the torque at least as well as before.
 
-The torque is no proof either if it is a function of the position, as under gravity, or if the motor
-holds its position while a hand moves the link: then it looks like the torque of a spring. So a
-slope of slow motion with a high correlation needs no torque, if the slope is that of a likely
-mistake, such as a gear ratio with one zero too many, or if it is negative.
+The torque is no proof either if it looks like the torque of a spring. This happens if it is a
+function of the position, as under gravity, or if a hand moves the link and the motor holds its
+position. So a slope of slow motion with a high correlation needs no proof by the torque in two
+cases: it is negative, or fits a likely mistake, such as a gear ratio with one zero too many.
 """
 
 import math
@@ -204,7 +204,7 @@ def _sign(here: Relation) -> Relation:
         return here
     flipped = _scaled(seen, "q", -1.0)
     after = fitted(flipped, before.form.f_0 if before else None)
-    # In slow motion, nothing makes the link move as far as its motor, but against it.
+    # In slow motion, no effect makes the link move as far as its motor, but in the other direction.
     is_certain = slope.is_slow and slope.is_rigid and distance(-slope.value, 1.0) < _LIKE
     if before is not None and after is not None and not is_certain:
         is_soft = _is_stiffness_negative(seen, before)

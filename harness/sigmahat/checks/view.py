@@ -23,8 +23,8 @@ class View:
     every: Mapping[str, Value]  # all parameters of the estimator
     samples: Samples  # at most 60000 ticks
     pieces: Sequence[Signals]
-    """Stretches without a gap in which theta, q and the torque of the modality are known. tau is
-    the motor's torque, or the sensor's torque divided by the gear ratio, with the sign of tau."""
+    """Parts of the log without a gap, in which theta, q and the torque of the modality are known.
+    Here tau is the motor's torque, or the sensor's torque converted to the motor."""
 
     @property
     def T(self) -> float:
@@ -49,13 +49,13 @@ def view(log: Log, configuration: Configuration) -> View:
 
 
 def all_parameters(configuration: Configuration) -> dict[str, Value]:
-    """Of the estimator, those that the configuration leaves out included."""
+    """All parameters of the estimator, also without a value in the configuration."""
     fmu = installed("StiffnessEstimator")
     return fmu.parameters(parameters(fmu, configuration))
 
 
 def _liveliest(samples: Samples) -> Samples:
-    """The ticks between which theta, or else q, moves most."""
+    """The ticks with the largest motion of theta, or of q if theta is missing."""
     ticks = len(samples.values)
     if ticks <= _MOST:
         return samples

@@ -1,7 +1,6 @@
 """What several commands share: options, the folder they write to, progress, errors in one line.
 
-A command with `@answer_options` ends with `answer(text, values)`, and needs nothing else for these
-options.
+A command with `@answer_options` ends with `answer(text, values)`, which handles these options.
 """
 
 from __future__ import annotations
@@ -78,7 +77,7 @@ def out_option(what: str, default: str) -> Callable[[_Command], _Command]:
         if name == "":
             raise click.BadParameter("expected a folder, got an empty name.")
         if Path(name).is_file():
-            raise click.BadParameter(f"{name} is a file; name a folder.")
+            raise click.BadParameter(f"expected a folder, got the file {name}.")
         return Path(name)
 
     shown = re.sub("{(.*?)}", lambda parameter: parameter[1].upper(), default)
@@ -99,8 +98,8 @@ def for_each_joint(
     """Results of a job by joint: of the requested joint, else of each joint of the configuration.
 
     The job of several joints runs in other processes. If the file names no joint, its name is "".
-    Raises LogError if the log or the configuration cannot be read, errors of the job, and
-    ClickException if the FMU of the estimator is not built.
+    Raises LogError if the log or the configuration cannot be read, ClickException if the FMU of the
+    estimator is not built, and errors of the job.
     """
     from sigmahat.logs.configuration import joints_of, read_document
     from sigmahat.logs.readers.formats import open_log
@@ -153,7 +152,7 @@ def answer_options(command: _Command) -> _Command:
 
 
 def answer(text: str, values: object = None, head: str = "") -> None:
-    """Prints the result: values after --json, nan as null; nothing after --quiet; else the text.
+    """Prints the result: with --json the values, nan as null; with --quiet nothing; else the text.
 
     head  is printed before, in bold
     """
@@ -169,7 +168,7 @@ def answer(text: str, values: object = None, head: str = "") -> None:
 
 
 def is_quiet() -> bool:
-    """Whether nothing but the result is to be printed: after --quiet or --json."""
+    """Whether only the result is to be printed: with --quiet or --json."""
     options = click.get_current_context().meta
     return bool(options.get(_QUIET) or options.get(_JSON))
 

@@ -33,7 +33,7 @@ def init(log: Path, config: Path, joint: str | None, force: bool) -> None:
     """Write a configuration for LOG, to be checked and completed.
 
     LOG is CSV, Parquet, MAT, HDF5, MCAP or a ROS 2 bag. Ports, units, signs and gear are guessed
-    from names and values of the columns. What cannot be guessed is marked with FILL IN.
+    from names and values of the columns. FILL IN marks values that cannot be guessed.
 
     For a log of several joints, the file has a section for each joint, and common values once.
     """
@@ -123,8 +123,8 @@ def open_page(log: Path, config: Path, port: int) -> None:
 def check(log: Path, config: Path, joint: str) -> int:
     """Find likely errors in the configuration of LOG, and name the keys to look at.
 
-    Errors of signs, units, gear ratios, zeros and delays are found. What no log can show is listed.
-    Exit status: 0 if nothing contradicts the log, 1 if something does.
+    Errors of signs, units, gear ratios, zeros and delays are found. The command also lists what no
+    log can show. Exit status: 0 if nothing contradicts the log, 1 if something does.
     """
     from sigmahat.checks.check import check
     from sigmahat.checks.findings import as_dict

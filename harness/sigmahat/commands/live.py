@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     help="udp:PORT, one message per datagram; tcp:PORT or stdin, one message per line, as JSON or "
     "CSV. ros2: joint states, from the topics that the columns name.",
 )
-@click.option("--replay", type=common.PATH, help="This log instead, at its own pace.")
+@click.option("--replay", type=common.PATH, help="Recorded log as the source, at its own speed.")
 @click.option(
     "--to",
     "targets",
@@ -36,18 +36,18 @@ if TYPE_CHECKING:
     "foxglove[:PORT], a WebSocket; ros2, topics. May be repeated.",
 )
 @click.option(
-    "--columns", default="", metavar="A,B,...", help="Columns of CSV without a title line."
+    "--columns", default="", metavar="A,B,...", help="Names of the columns, if CSV has no title."
 )
 @common.option(
     "--host",
     default="127.0.0.1",
     help="Address of this computer to which others may connect; 0.0.0.0 means every address.",
 )
-@common.out_option("Folder for the recording and what was learned.", "{config}-live")
+@common.out_option("Folder for the recording and the results.", "{config}-live")
 @click.option(
     "--start-from",
     type=common.PATH,
-    help="Go on from what was learned before: a folder of results, or its state.json.",
+    help="Continue an earlier estimation: its folder of results, or the state.json in it.",
 )
 @common.answer_options
 def live(
@@ -60,7 +60,7 @@ def live(
     out: Path,
     start_from: Path | None,
 ) -> None:
-    """Estimate on line: messages of a robot in, estimates out, until Ctrl-C.
+    """Estimate on line: read messages of a robot and send estimates, until Ctrl-C.
 
     CONFIG is the configuration of a log of the robot, with the columns of the messages. Messages
     are recorded as a log, from which `sigmahat estimate` computes the same estimates.

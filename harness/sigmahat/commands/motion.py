@@ -54,10 +54,10 @@ def _limit(name: str, text: str) -> click.Option:
 @click.option(
     "--after",
     type=common.PATH,
-    help="Log of the joint, which shows what its motion has to be; CONFIG belongs to this log.",
+    help="Earlier log of this joint, to adapt the motion to it; CONFIG describes this log.",
 )
 @common.out_option("Folder to write into.", "motion")
-@click.option("--joint", metavar="NAME", default="", help="Which of several joints of CONFIG.")
+@click.option("--joint", metavar="NAME", default="", help="Joint of CONFIG, if it has several.")
 @common.answer_options
 def motion(
     config: Path | None,
@@ -73,10 +73,10 @@ def motion(
 ) -> None:
     """Propose a motion of the motor that will show the stiffness of a joint.
 
-    The motion is a sum of sines that keeps the limits at the gear output for every joint of a set.
+    The motion is a sum of sines. It keeps the limits at the gear output for every joint of a set.
     The set has joints that fit the limits or, with --after, joints that fit the log. The motion
-    stays below resonance, begins and ends at rest, and is written as CSV, as a trajectory for ROS,
-    and as C. CONFIG gives gear ratio, encoders and noise.
+    stays below resonance, and begins and ends at rest. The command writes it as CSV, as a
+    trajectory for ROS, and as C. CONFIG gives gear ratio, encoders and noise.
     """
     from sigmahat.files.output import output_folder
     from sigmahat.logs.configuration import read_configuration

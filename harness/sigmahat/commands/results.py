@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 @click.option(
     "--start-from",
     type=common.PATH,
-    help="Go on from what was learned before: the folder of another log, or its state.json.",
+    help="Continue the estimation of another log: its folder of results, or the state.json in it.",
 )
 @click.option(
     "--to",
@@ -49,8 +49,8 @@ def estimate(
 
     LOG is CSV, Parquet, MAT, HDF5, MCAP or a ROS 2 bag; `sigmahat init LOG` writes the
     configuration. Writes a table (CSV for CSV, else Parquet), the stiffness against deformation
-    (estimate.curve.csv) and a figure. Also writes a data sheet of the joint
-    (joint.json) for `sigmahat export`, and what was learned (state.json) for --start-from.
+    (estimate.curve.csv) and a figure. Also writes a data sheet of the joint (joint.json) for
+    `sigmahat export`, and the state of the estimator (state.json) for --start-from.
     With several joints, each joint has its own folder, and a row in joints.csv.
     """
     from sigmahat.checks.findings import as_dict
@@ -114,20 +114,20 @@ def _import(module: str) -> None:
     "config",
     required=True,
     type=common.FILE,
-    help="Configuration with which `sigmahat estimate` learned from the first log.",
+    help="Configuration with which `sigmahat estimate` read the first log.",
 )
 @click.option(
     "--start-from",
     type=common.PATH,
-    help="What was learned: its folder, or state.json.  [default: sigmahat-results/CONFIG]",
+    help="Estimate to test: its folder, or state.json.  [default: sigmahat-results/CONFIG]",
 )
 @common.joint_option
 @common.answer_options
 def validate(log: Path, config: Path, start_from: Path | None, joint: str) -> int:
-    """Check with LOG what was learned from another log of the same joint.
+    """Check an estimate with LOG, another log of the same joint.
 
-    LOG is replayed with the learned stiffness, and without. Exit status: 0 if the logs agree, 1 if
-    the logs disagree or decide nothing.
+    LOG is replayed with the earlier stiffness, and without it. Exit status: 0 if the logs agree, 1
+    if the logs disagree or decide nothing.
     """
     from sigmahat.validation.validate import summary
 
@@ -158,8 +158,8 @@ _SUFFIXES = {**_START_VALUES, **_MODELS}
     "--to",
     required=True,
     type=click.Choice(list(_SUFFIXES)),
-    help="Start values: ssv, a parameter set for SSP; matlab, a function; modelica, a record. "
-    "Joint for a simulator: mjcf (MuJoCo), sdf (Gazebo), urdf, drake (SDF for Drake).",
+    help="Format. Start values of the FMU: ssv (for SSP), matlab or modelica. "
+    "Model of the joint: mjcf (MuJoCo), sdf (Gazebo), urdf, drake (SDF for Drake).",
 )
 @click.option(
     "--out",
@@ -172,7 +172,7 @@ def export(sheet: Path, to: str, out: Path | None, force: bool) -> None:
     """Write the data sheet of a joint as start values of the FMU, or as a joint for a simulator.
 
     SHEET is the joint.json that `sigmahat estimate` wrote, or its folder. An FMU with these start
-    values begins with the stiffness that was learned. The joint has two hinges, motor and
+    values begins with the estimated stiffness. The joint has two hinges, motor and
     flexibility, with the intervals of all parameters.
     """
     from sigmahat.fmi.instance import installed

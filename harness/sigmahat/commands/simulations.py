@@ -17,7 +17,7 @@ def _names(_: click.Context, __: click.Parameter, begin: str) -> list[str]:
 @common.command("reproduce --scenario as-printed --seeds 20 --out as-printed")
 @common.option("--scenario", default="table1", shell_complete=_names, help="What to run.")
 @common.option(
-    "--seeds", default=1, type=common.COUNT, help="Number of runs, each with other noise."
+    "--seeds", default=1, type=common.COUNT, help="Number of runs, each with different noise."
 )
 @common.out_option("Folder for figures and CSV files.", "{scenario}")
 @common.answer_options
@@ -57,14 +57,14 @@ def reproduce(scenario: str, seeds: int, out: Path) -> None:
 @click.option(
     "--misfits",
     is_flag=True,
-    help="FilteredRegression on joints with hysteresis, backlash, bad friction and sensors, ..., "
-    "in place of both methods.",
+    help="Test only FilteredRegression, on joints with hysteresis, backlash, high friction, bad "
+    "sensors and other effects.",
 )
 @common.option(
     "--seeds",
     default=5,
     type=common.COUNT,
-    help="Number of runs of each joint, each with other noise.",
+    help="Number of runs of each joint, each with different noise.",
 )
 @click.option("--jobs", type=common.COUNT, help="Processes to use.  [default: all cores]")
 @common.out_option("Folder for figure and CSV file.", "compare")

@@ -1,4 +1,4 @@
-"""The job of `sigmahat compare`: every joint with every seed, and how well each method did."""
+"""The job of `sigmahat compare`: runs every joint with every seed, and judges each method."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
@@ -77,7 +77,7 @@ def compare(
 
     processes, progress   as for sigmahat.runs.engine.run_all(); one run is one job
 
-    Raises what simulate() raises, and WorkerError if a process was ended from outside.
+    Raises what simulate() raises, and WorkerError if another program ended a process.
     """
     runs = [(i, seed) for i in range(len(joints)) for seed in seeds]
     # Longest runs first, so that no process waits for another process at the end.

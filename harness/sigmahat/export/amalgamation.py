@@ -42,7 +42,7 @@ def _inlined(file: Path, folders: list[Path], done: set[Path]) -> str:
             if (folder / match[1]).is_file():
                 return _inlined(folder / match[1], folders, done)
         expected = ", ".join(map(str, folders))
-        raise FileNotFoundError(f"header {match[1]}: expected in one of {expected}")
+        raise FileNotFoundError(f"no header {match[1]}: expected it in {expected}")
 
     text = _OWN_INCLUDE.sub(header, file.read_text(encoding="utf-8"))
     return f"\n/* ---- {file.name} ---- */\n\n{text}"

@@ -86,7 +86,7 @@ def _packages(files: Iterable[Path]) -> Iterable[Component]:
     """Packages that pip installs with a wheel; extras are optional. pip decides on the versions."""
     wheel = next((file for file in files if file.suffix == ".whl"), None)
     if wheel is None:
-        raise FileNotFoundError("the release has no wheel; make it before its bill of materials")
+        raise FileNotFoundError("no wheel in the release; build it before the bill of materials")
     (packed,) = distributions(path=[str(wheel)])
     for requirement in packed.requires or ():
         package = re.split(r"[^\w.-]", requirement)[0]

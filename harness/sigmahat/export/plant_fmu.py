@@ -69,14 +69,14 @@ def _check(
     names = [name for names in kinds.values() for name in names]
     for name in plant.parameters:
         if is_of_every_plant(name):
-            raise ValueError(f"{plant.name}: the name of the parameter {name} is taken")
+            raise ValueError(f"{plant.name}: every plant has {name}; rename this parameter")
     for name in variables:
         if name not in names:
             raise ValueError(unknown(f"variable of {plant.name}", name, names))
     for kind, own in kinds.items():
         for name in own:
             if name not in variables:
-                raise ValueError(f"{plant.name}: variables has no entry for the {kind} {name}")
+                raise ValueError(f"{plant.name}: expected an entry for {kind} {name} in variables")
             unit = variables[name].unit
             if unit not in units:
                 raise ValueError(f"{plant.name}.{name}: {unknown('unit', unit, units)}")

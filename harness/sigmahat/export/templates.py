@@ -1,8 +1,8 @@
 """Templates of model descriptions, in ``modelDescription/``.
 
 A template is Jinja2 that renders to FMI 2.0 XML. ``description`` adds parts that follow from these
-data. Two attributes are not in FMI: ``depends`` of an output names the variables on which its
-initial value depends, for the model structure; ``array`` of a first element describes its array,
+data. Two attributes do not belong to FMI: ``depends`` of an output names the variables on which its
+initial value depends, for the model structure. ``array`` of a first element describes its array,
 for Modelica.
 """
 

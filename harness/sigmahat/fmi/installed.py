@@ -25,7 +25,7 @@ def fmu(name: str) -> Path:
     path = folder() / f"{name}.fmu"
     if not path.is_file():
         found = ", ".join(sorted(p.stem for p in folder().glob("*.fmu"))) or "no FMU"
-        raise FileNotFoundError(f"no {name}.fmu in {folder()}, which holds {found}")
+        raise FileNotFoundError(f"no {name}.fmu in {folder()}; this folder contains {found}")
     return path
 
 

@@ -48,14 +48,14 @@ _log = logging.getLogger("sigmahat")
 
 
 class FmuError(RuntimeError):
-    """An FMU refused a call. The message is the FMU's own."""
+    """An FMU refused a call. The message comes from the FMU."""
 
 
 class Fmu:
     """An unpacked FMU and the variables of its model description, for any number of slaves.
 
-    The unpacked files are removed at the end of the process, or at the end of the block if the
-    object is used as a context manager.
+    The unpacked files are removed at the end of the process, or of the block if the object is used
+    as a context manager.
     """
 
     def __init__(self, path: Path) -> None:
@@ -251,7 +251,7 @@ class Slave:
             raise self.failure(f"{function.__name__} failed")
 
     def failure(self, what: str) -> FmuError:
-        """The error to raise: what the FMU said, else what happened."""
+        """The error to raise: the message of the FMU, else a description of the event."""
         return FmuError(f"{self.name}: {'; '.join(self.errors) or what}")
 
     def initialize(self, start: Mapping[str, Value]) -> None:
@@ -273,14 +273,14 @@ class Slave:
 
     @contextmanager
     def only_errors(self) -> Iterator[None]:
-        """Inside the block, the FMU reports errors alone: the user knows about its warnings."""
+        """Inside the block, the FMU reports only errors, because the user knows its warnings."""
         category = (fmi2.fmi2String * 1)(b"logStatusError")
         self.call(self.functions.fmi2SetDebugLogging, fmi2.fmi2True, 1, category)
         yield
         self.call(self.functions.fmi2SetDebugLogging, fmi2.fmi2False, 0, None)
 
     def saved(self) -> bytes:
-        """The state: parameters, inputs, outputs, time, and all that the FMU has learned."""
+        """The state of the FMU: parameters, inputs, outputs, time, and the estimate."""
         with self._state(self.fmi.getFMUstate) as state:
             return bytes(self.fmi.serializeFMUstate(state))
 

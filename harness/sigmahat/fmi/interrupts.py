@@ -21,8 +21,8 @@ def handling(handler: Callable[..., object], *numbers: int) -> Iterator[None]:
 def interrupts_wait() -> Iterator[None]:
     """Ctrl-C inside the block has its effect at the end of the block.
 
-    It would be lost, or would leave work half done. The function has no effect outside of the main
-    thread: only this thread handles signals.
+    Inside the block, Ctrl-C would be lost, or would leave work half done. The function has no
+    effect outside of the main thread: only this thread handles signals.
     """
     if threading.current_thread() is not threading.main_thread():
         yield

@@ -68,10 +68,10 @@ def simulate(
     can be any FMUs for FMI 2.0 Co-Simulation. Inputs are linear during a step, but held if the
     plant cannot interpolate (see canInterpolateInputs in its model description).
     The noise of a plant of this package has a period of its own, the parameter noise.samplePeriod.
-    From time to time progress is called with the number of steps made since the last call.
+    Progress is called from time to time with the number of steps since the last call.
 
-    Raises FileNotFoundError for a missing FMU, ValueError for a name that an FMU does not have or
-    a value that does not fit, FmuError with the FMU's own message if an FMU refuses. Warnings of
+    Raises FileNotFoundError for a missing FMU, ValueError for an unknown name or a value that does
+    not fit, and FmuError with the message of the FMU if an FMU refuses. Warnings of
     FMUs go to the logger "sigmahat".
     """
     if not (math.isfinite(T) and T > 0) or steps != int(steps) or steps < 0:

@@ -31,7 +31,7 @@ _FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
 
 @lru_cache
 def library() -> ctypes.CDLL:
-    """The library of this installation. Raises FmuError if it is missing or of another version."""
+    """The library of this installation. Raises FmuError if none has the right version."""
     path = folder() / f"sigmahat_native{fmpy.sharedLibraryExtension}"
     try:
         found = ctypes.CDLL(str(path))
@@ -41,5 +41,5 @@ def library() -> ctypes.CDLL:
             function = getattr(found, name)
             function.restype, function.argtypes = result, arguments
     except (OSError, AttributeError) as error:
-        raise FmuError(f"{path}: not a usable library ({error}); install or build again") from error
+        raise FmuError(f"{path}: cannot load this ({error}); install or build it again") from error
     return found

@@ -55,9 +55,9 @@ class _Call(ctypes.Structure):
 class SampleLoop:
     """A list of calls of FMI functions; for each sample all calls are made, in this order.
 
-    A table has a row for each sample, [size: samples x values]. An array [size: values] is the
-    same row for every sample: such an array passes values from the get of one FMU to the set of
-    another FMU. Tables are C-contiguous, and are read and written in place.
+    A table has a row for each sample, [size: samples x values]. An array [size: values] is the same
+    row for every sample. Such an array passes values from the get of one FMU to the set of another.
+    Tables are C-contiguous, and are read and written in place.
     """
 
     def __init__(self, *parts: SampleLoop) -> None:

@@ -12,8 +12,8 @@ from sigmahat.logs.units import seconds, unwrap
 _MOSTLY = 0.99  # least fraction of the steps of a clock that increase
 _NAMED = 0.8  # the same where its name says that it has times: a logger may write rows twice
 _EVEN = 0.05  # largest relative difference of a step from the usual step
-_MISSING = 1.8  # in usual steps: in a longer step, rows are lost
-_GAP = 3.0  # in usual steps: a longer step is a gap
+_MISSING = 1.8  # usual steps: in a longer step, rows are lost
+_GAP = 3.0  # usual steps: a longer step is a gap
 _EPOCH = {"ns": 1e17, "us": 1e14, "ms": 1e11, "s": 1e8}  # from about 1973 on
 _FASTEST, _SLOWEST = 2e-5, 0.2  # usual time between rows of a log [s]
 _SLOW = 0.05  # [s] between rows; above, a stiffness can hardly be estimated
@@ -24,8 +24,8 @@ _STATES = 8  # a column with fewer whole numbers is a state or a flag
 _STEPS = 5  # fewer steps between distinct values show no encoder
 PERIODS = (360.0, 2 * np.pi, *(2.0**k for k in range(8, 33)))
 """Usual periods of a counter, in degrees, in radians and in counts."""
-_FEWEST_COUNTS = 100  # of an encoder in a turn
-_JUMP = 0.5  # of the range: a larger step may be a counter that starts again
+_FEWEST_COUNTS = 100  # fewest counts of an encoder in a turn
+_JUMP = 0.5  # share of the range: at a larger step, a counter may start again
 _SEEN = 0.02  # largest relative difference between a jump and a known period
 
 
@@ -246,7 +246,7 @@ class Clock:
 @dataclass(frozen=True)
 class Columns:
     signals: Sequence[Column]
-    clocks: Mapping[str | None, Clock]  # by the column of the times; last None, for no times
+    clocks: Mapping[str | None, Clock]  # clocks by column of times; the last, None, for no times
     facts: Mapping[str, Facts]  # facts of all columns, by name
     window_T: float  # time between the samples of the windows [s]
 

@@ -3,7 +3,7 @@
     joints = guess(read_columns(open_log(path)))
     joints["knee"].ports["theta"].column
 
-A guess is data: `template.py` writes it as a configuration.
+A guess is data: `template.py` writes this guess as a configuration.
 """
 
 import re
@@ -87,7 +87,7 @@ def one_joint(log: Log, joints: Mapping[str, JointGuess], name: str) -> JointGue
             return joint
     named = [each for each in joints if each]
     if not named:
-        raise LogError(f"{log.path}: its columns name no joints; leave --joint out")
+        raise LogError(f"{log.path}: its column names contain no joint; omit --joint")
     raise LogError(f"{log.path}: {unknown('joint', name, named)}")
 
 

@@ -112,7 +112,7 @@ def _unit_by_velocity(column: Column, signals: Sequence[Column], T: float) -> st
         scale = scale_of_derivative(column.window, other.window, T)
         if scale is None:
             continue
-        turn = TURN[unit] * (60 if minute else 1) / abs(scale)  # of the position, in its unit
+        turn = TURN[unit] * (60 if minute else 1) / abs(scale)  # of the joint, in its unit
         best = min(TURN, key=lambda each: abs(math.log(turn / TURN[each])))
         if abs(math.log(turn / TURN[best])) < 0.05:
             return best
@@ -157,7 +157,7 @@ def _is_vague(port: PortGuess) -> bool:
 
 
 def _set_unit_by_other(port: PortGuess, other: PortGuess, slope: float) -> None:
-    """The unit of a vague position, whose values are slope times those of the other position."""
+    """The unit of a position from the other one; its values are slope times the other values."""
     if other.unit in TURN:
         same = [unit for unit in TURN if abs(slope * TURN[other.unit] / TURN[unit] - 1) < _AS_FAR]
         port.unit = same[0] if same else other.unit

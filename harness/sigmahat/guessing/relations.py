@@ -88,11 +88,11 @@ class Drive:
 def drive(x: Array, y: Array, tau: Array, T: float) -> Drive:
     """Relates a torque to two positions, whatever their units are; all [size: samples].
 
-    tau = B x'' + D x' + C sign(x') + K (x - y) for a linear spring, where only the part of y that
-    is not proportional to x counts. The equation has the acceleration of the motor, not of the
+    tau = B x'' + D x' + C sign(x') + K (x - y) for a linear spring, with only the part of y that is
+    not proportional to x. The equation has the acceleration of the motor, not of the
     link. So the equation explains the torque better if x is the motor. The sign of the torque
     follows from friction, which takes power from the motor on average. But a hand that moves the
-    link gives power to the motor, by a deformation that follows the velocity: then `sign` is 0.
+    link gives power to the motor. Then the deformation follows the velocity, and `sign` is 0.
     """
     if len(x) < 8 * _SMOOTH or not np.ptp(x) or not np.ptp(tau):
         return Drive(0.0, 0)

@@ -225,7 +225,7 @@ def _setting(columns: Sequence[Column], ports: Mapping[str, Role]) -> dict[str, 
         each
         for each in columns
         if each.meaning.quantity in ("position", None)
-        # A set-point may also be of a position.
+        # A column of set-points may also contain positions.
         and (
             (each.meaning.side == "setting" and not each.meaning.reference)
             or not any(abs(line(each.window, x).correlation) > _CLOSE for x in windows)

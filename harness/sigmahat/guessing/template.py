@@ -33,8 +33,8 @@ _MOST_LISTED = 200  # columns: with more lines, the file would be too long to be
 
 
 def write(log: Log, columns: Columns, joints: Mapping[str, JointGuess]) -> str:
-    """The text of a configuration of these joints; values that all joints have are written once,
-    and where no column looks like a port, it asks for a column."""
+    """The text of a configuration of these joints. Common values are written once. If no column
+    looks like a port, the text asks for a column."""
     several = len(joints) > 1
     head = {
         "log": log.path.name,

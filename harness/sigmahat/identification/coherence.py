@@ -1,7 +1,7 @@
-"""Up to which frequency the deformation is caused by the torque of the spring.
+"""The frequency up to which the torque of the spring causes the deformation.
 
-Above it, what the encoders show as a deformation are errors: of gears, of couplings, of the
-encoders between their counts. As the regressor of the stiffness, such errors make it too small.
+Above this frequency, the measured deformation consists of errors: of gears, of couplings, of the
+encoders between their counts. As a regressor, these errors make the stiffness too small.
 """
 
 import itertools
@@ -28,8 +28,8 @@ def coherent_range(piece: Signals, gamma: float, noise: TorqueNoise) -> float:
     """Frequency above which the deformation is noise [Hz]; inf if it is not up to the bandwidth.
 
     Bands of half an octave. From the frequency on, the coherence of deformation and torque is below
-    one half in all of them, and in the first one the deformation has more power than the noise of
-    the torque explains.
+    one half everywhere. At the frequency, the deformation has more power than the noise of the
+    torque explains.
     """
     T, highest = noise.T, noise.bandwidth
     if highest <= _LOWEST or len(piece.theta) * T < 2 * _SEGMENT:
@@ -86,10 +86,10 @@ def spectra(x: Array, y: Array, h: float) -> tuple[Array, Array, Array]:
 
 
 def is_hidden(system: Equations, f_0: float, T: float, noise: float, known: bool) -> bool:
-    """Whether what the motor leaves of the deformation is rounding: then the log shows how
-    inertia, friction and the load together move, and not one of them.
+    """Whether the deformation is a function of the motor's motion, but for rounding. Then the log
+    shows only the sum of inertia, friction and load.
 
-    A free load in one slow sine does that: the spring has the torque of one more inertia.
+    A free load in one slow sine is an example: the spring has the torque of one more inertia.
 
     system  the equations, see plain_equations()
     f_0, T  their low pass [Hz], and the time between samples [s]
@@ -102,5 +102,5 @@ def is_hidden(system: Equations, f_0: float, T: float, noise: float, known: bool
     others, spring = R[:, :-2], R[:, -2]  # the last one is y
     left = spring - others @ np.linalg.lstsq(others, spring, rcond=None)[0]
     variance = float(left @ left) / int(system.rows.sum()) * system.units[0] ** 2
-    share = min(1.0, _BUTTERWORTH * 4 * f_0 * T)  # of white noise, every second sample
+    share = min(1.0, _BUTTERWORTH * 4 * f_0 * T)  # share of white noise in every second sample
     return bool(noise * share > _HIDDEN * variance)

@@ -1,7 +1,7 @@
 """The job of `sigmahat identify`: motor data and settings of the estimator, off line from a log.
 
-B, D_theta and Coulomb friction with 95 % intervals, the torque constant if there is a torque
-sensor, the noise of the signals, a bandwidth and V_a for the filters, and the polynomial orders.
+Results: B, D_theta and Coulomb friction with 95 % intervals, and the torque constant if there is a
+torque sensor. Further results: noise of the signals, bandwidth and V_a of the filters, and orders.
 """
 
 import math
@@ -30,11 +30,11 @@ from sigmahat.logs.sampling import Samples, sample, stretches
 _LONGEST = 600.0  # [s] of a log that are used
 _FEWEST = 1000  # samples of the longest stretch that are left if the motor moves slowly
 _RESOLVED = 0.07
-"""Largest bandwidth of the estimator, in sampling frequencies. Of joints that are sampled at
-250 Hz, the intervals hold fewer with 0.05, which is too slow, and with 0.15, where signals between
-samples are no lines."""
+"""Largest bandwidth of the estimator, in sampling frequencies. For joints that are sampled at 250
+Hz, other values reduce the coverage. 0.05 is too slow; with 0.15, the signals between samples are
+no lines."""
 _V_A = tuple(10.0**e for e in np.arange(5.0, 13.1, 0.5))
-_MATTERS = 0.05  # of the covered deformation: a smaller error of its zero is left to prior.bias
+_MATTERS = 0.05  # share of the covered deformation; prior.bias covers smaller errors of zero
 _V_A_TICKS = 10000
 _NO_TORQUE = (
     "the torque of the motor is only noise: such a log does not show its inertia and friction, and "
@@ -161,7 +161,7 @@ def _notes(
     no_torque: bool,
     hidden: bool,
 ) -> Iterator[str]:
-    """What a log does not show, or not as the configuration says; changed at a time [s]."""
+    """Notes on what the log does not show, or contradicts; changed: time of a change [s]."""
     if changed is not None:
         yield _CHANGES.format(t=changed)
     if no_torque or hidden:
@@ -180,8 +180,8 @@ def _set_points(pieces: Sequence[Signals], has_effect: bool) -> tuple[float, flo
 
 
 def _apart(pieces: Sequence[Signals], count: float) -> int:
-    """Distance of the samples that the fit takes, in samples: 1 if the motor moves by at least one
-    count [rad] between two samples (root mean square), else as many as it needs for two counts.
+    """Distance of the samples for the fit, in samples. It is 1 if the motor moves by at least one
+    count [rad] between two samples (RMS), else the number of samples for two counts.
 
     The errors of rounding must be independent from one sample to the next. Of a slower motor, the
     samples between repeat the same error.
@@ -217,8 +217,8 @@ def _check(configuration: Configuration, torque_constant: bool) -> None:
             raise LogError(f"{configuration.path}: identify needs [ports.{name}]{why}; add it")
     if torque_constant and configuration.ports["tau"].torque_constant is None:
         raise LogError(
-            f"{configuration.path}: [ports.tau] is not in A with a torque_constant; "
-            "leave --torque-constant out"
+            f"{configuration.path}: expected [ports.tau] in A with a torque_constant; "
+            "add both, or omit --torque-constant"
         )
 
 

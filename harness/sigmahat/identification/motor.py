@@ -32,14 +32,14 @@ _N, _M = 4, 4  # highest orders of the polynomial that are tried
 
 @dataclass(frozen=True)
 class KnownInertia:
-    """What the configuration says about B."""
+    """What is known of B from the configuration."""
 
     value: float  # [kg.m2]
     std: float  # standard deviation of its relative error, > 0
 
     def contradicts(self, found: Quantity) -> bool:
-        """Whether a B is so far off that the torque may have another scale than the configuration
-        says: a wrong torque constant or gear ratio changes B and the stiffness by the same factor.
+        """Whether B is so far off that the scale of the torque may be wrong. A wrong torque
+        constant or gear ratio changes B and the stiffness by the same factor.
         """
         most = self.value * max(_FAR * self.std, _ANOTHER)
         return abs(found.value - self.value) - found.half_width > most
@@ -51,10 +51,10 @@ class MotorFit:
 
     quantities: dict[str, Quantity]
     """B, D_theta and tau_coulomb, and the zero of the deformation where there is one."""
-    gain: tuple[float, float]  # of a measured torque: value, and half of the 95 % interval
+    gain: tuple[float, float]  # gain of a measured torque, half of its 95 % interval
     contradicted: bool
-    """Whether the B of the log contradicts what is known of it: then it counts as not determined,
-    and the other quantities are identified with the known B."""
+    """Whether the B of the log contradicts the known B. Then B counts as not determined, and the
+    other quantities are identified with the known B."""
     polynomial: Form  # orders and symmetry of the polynomial for the estimator
     spring: float  # largest torque of the spring in the log [N.m]
 
@@ -106,11 +106,11 @@ def _with_spring(
 ) -> tuple[Form, Form]:
     """The form with the polynomial that predicts best what was left out, up to its orders.
 
-    It has odd powers alone unless all powers are significantly better: in slow motion, the more a
-    spring may do, the less the log shows of friction.
+    The form has only odd powers unless all powers are significantly better: in slow motion, a more
+    general spring leaves less information about friction.
 
-    The second form is the one for the estimator. It has _POWERS powers, of which a log may show
-    little: with fewer, the interval would not contain what the log does not show.
+    The second form is the one for the estimator. That form has _POWERS powers, even if the log
+    shows little of them: with fewer powers, the interval would be too narrow.
     """
 
     def chosen(form: Form) -> tuple[Form, Array]:
@@ -126,15 +126,15 @@ def _with_spring(
 
 @dataclass(frozen=True)
 class Variants:
-    """The fit of the equations, and fits of others that differ in what nobody knows.
+    """The fit of the equations, and fits of others with different uncertain assumptions.
 
     Where rounding matters, or friction is not of the form of the equation, the results differ by
     more than chance.
     """
 
     first: Fit
-    others: Sequence[Fit]  # with other filters, or with the ends of a known inertia
-    frictions: Sequence[Fit]  # with other forms of friction
+    others: Sequence[Fit]  # fits with other filters, or ends of a known inertia
+    frictions: Sequence[Fit]  # fits with other forms of friction
 
 
 def _frictions(plain: Form) -> list[Form]:
@@ -159,7 +159,7 @@ def _variants(
 
     The torque may be late in all of them: where a hand moves the link, a delay looks like friction.
 
-    The second ones are with B as known, if it is.
+    The second fits use the known B, if there is one.
     """
     sensor = pieces[0].tau_e is not None
     widest = _with_all_columns(form)
@@ -227,7 +227,7 @@ def _zero(spring: Spring, fits: Sequence[Fit], gamma: float) -> Quantity:
     """The deformation at which spring and constant torque cancel.
 
     It is determined if its interval is short compared with the covered deformation, and if the
-    stiffness is positive: else a sign or a gear ratio is wrong, and the zero means nothing.
+    stiffness is positive. A negative stiffness means a wrong sign or gear ratio.
     """
     value, *others = (replace(spring, fit=each).zero() for each in (spring.fit, *fits))
     if not all(map(math.isfinite, [value, *others])):

@@ -62,9 +62,8 @@ class TorqueNoise:
     def bandwidth(self) -> float:
         """Frequency at which a position twice differentiated is noisier than the torque [Hz].
 
-        The sum of both noises is about white below this frequency, and is attenuated above it, if
-        it is weighted by 1/(1 + (f/f_0)^4), the squared gain of a Butterworth filter of second
-        order.
+        The sum of both noises is about white below this frequency. Above it, the weight 1/(1 +
+        (f/f_0)^4) attenuates the noise: the squared gain of a Butterworth filter of second order.
         """
         highest = _HIGHEST / self.T
         if self.position <= 0.0:

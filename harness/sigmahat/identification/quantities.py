@@ -24,8 +24,8 @@ class Quantity:
     """kg.m2 for B, N.m.s/rad for D_theta, N.m for tau_coulomb, rad for zero, N.m/A for
     torque_constant."""
     determined: bool
-    """Whether the interval is narrow enough to use the value: within 10 % of it on either side, or
-    for tau_coulomb within 0.5 % of the torque, for zero within 5 % of the covered deformation."""
+    """Whether the interval is narrow enough to use the value: within +-10 %. For tau_coulomb, +-0.5
+    % of the torque is enough, for zero +-5 % of the covered deformation."""
 
     @property
     def interval(self) -> tuple[float, float]:
@@ -34,7 +34,7 @@ class Quantity:
 
     @property
     def told(self) -> bool:
-        """The name of `determined` up to version 0.1."""
+        """Old name of `determined`, up to version 0.1."""
         warnings.warn("Quantity.told is now .determined", DeprecationWarning, stacklevel=2)
         return self.determined
 

@@ -10,12 +10,12 @@ spring at a wrong zero of the deformation.
 
 Least squares would be biased: theta'' of a rounded position is mostly noise, and noise in a
 regressor makes its coefficient too small. Therefore even and odd samples are filtered and
-differentiated separately. Their rounding errors are independent while the joint moves, and the
-regressors of each half are the instruments of the other half: the sums Z'X contain no
-squared noise.
+differentiated separately. Their rounding errors are independent while the joint moves. The
+regressors of each half are the instruments of the other half, so the sums Z'X contain no squared
+noise.
 
-The equations are kept as sums over blocks of time, never row by row: so the memory does not go with
-the number of samples, and each fit takes no time beside the filters.
+The equations are kept as sums over blocks of time, never row by row. So the memory does not grow
+with the number of samples, and a fit takes much less time than the filters.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ CONSTANT = "constant"  # name of the column of c
 _BLOCK = 0.25  # [s]; errors further apart are taken as independent
 _WINDOW = 1 << 14  # rows that are filtered at a time, about
 _EDGE = 0.1  # [s] left out at both ends of a piece, where the filter has not settled
-_PARTS = 8  # of a log, of which each is predicted from the others
+_PARTS = 8  # number of parts of a log; each is predicted from the others
 _LEAST = 40  # samples of a stretch: filters need some
 
 
@@ -103,7 +103,7 @@ class Form:
 
     def names(self, sensor: bool) -> list[str]:
         """Names of the columns. With a torque sensor the polynomial is replaced by a gain."""
-        has_constant = sensor or self.symmetric  # else it is a coefficient of the polynomial
+        has_constant = sensor or self.symmetric  # else the polynomial has the constant
         return [
             *MOTOR,
             *(["load"] if self.load_friction else []),
@@ -207,7 +207,7 @@ class Rows:
     y: Array  # [size: 2 x rows]
     X: Array  # [size: 2 x rows x columns]
     Z: Array  # the same
-    place: NDArray[np.intp]  # of the rows in the piece, without a gap
+    place: NDArray[np.intp]  # places of the rows in the piece, without a gap
 
 
 def rows(
@@ -365,9 +365,9 @@ def _direction(velocity: Array, v_s: float) -> Array:
 
 
 def units(pieces: Sequence[Signals]) -> tuple[float, float]:
-    """What deformation and set-point are divided by in the polynomial [rad, 1].
+    """Divisors of deformation and set-point in the polynomial [rad, 1].
 
-    They are the largest magnitudes in all pieces: divided by them, values have powers of order 1.
+    The divisors are the largest magnitudes in all pieces, so that powers are of order 1.
     """
     phi = max(float(np.max(np.abs(piece.phi))) for piece in pieces)
     set_point = max(float(np.max(np.abs(piece.set_point))) for piece in pieces)
@@ -467,8 +467,8 @@ def left_out(e: Equations) -> Array:
 
 
 def choose(system: Equations, form: Form) -> tuple[Form, Array]:
-    """The form with the orders, up to its own, that have the least error on eighths of the log that
-    were left out, and these errors, see left_out; system has the equations of the form.
+    """The form with the orders, up to its own, that have the least error in a cross-validation over
+    eighths of the log, and these errors, see left_out; system has the equations of the form.
     """
     system = system.in_parts(_PARTS)
     others = [name for name in system.names if name not in eta(form.n, form.m)]

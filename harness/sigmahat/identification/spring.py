@@ -1,7 +1,7 @@
 """The spring in a fit of the motor equation: the zero and the largest torque of its polynomial.
 
-Also springs that are no polynomial: one that changes at some time in the log, and one whose slope
-changes at once at some deformations, as in harmonic drives.
+The module also finds springs that are no polynomial: a spring that changes during the log, and a
+spring with a sudden change of slope, as in harmonic drives.
 """
 
 import math
@@ -122,8 +122,8 @@ class Spring:
 
 _PLACES = 16  # steps in which the time is looked for, then in smaller ones around the best
 _EXPLAINED = 0.3
-"""Largest squared error of two springs, over that of one. A change by a fifth leaves 0.04; without
-a change, at least 0.6 was left on 38 logs with hysteresis, backlash and friction of other forms."""
+"""Largest squared error of two springs, over that of one. After a change by a fifth, this ratio is
+0.04. Without a change, it was 0.6 or more on 38 logs with hysteresis, backlash and friction."""
 _ORDER = 4  # powers of the torque of each of the two springs
 
 
@@ -177,11 +177,11 @@ def with_two_springs(pieces: Sequence[Signals], first: int) -> list[Signals]:
     return found
 
 
-_SHARES = np.linspace(0.1, 0.9, 17)  # of the usual deformation: places that are compared
+_SHARES = np.linspace(0.1, 0.9, 17)  # compared places, over the usual deformation
 _NOT_RARE = 0.995  # quantile of the deformation that is not rare
-_FINER = np.linspace(-0.04, 0.04, 9)  # added to the best ones, for places near them
+_FINER = np.linspace(-0.04, 0.04, 9)  # offsets from the best places, for nearby places
 _KNEES_APART = 0.1  # least distance of two knees
-_LEAST_CHANGE = 0.25  # of the slope at a knee, over that at the other one
+_LEAST_CHANGE = 0.25  # least change of slope at a knee, over the other knee
 _MOST = 100_000  # samples that are used
 
 
@@ -190,10 +190,10 @@ def knees(
 ) -> tuple[float, ...]:
     """Places of up to two knees, from the zero [rad], in increasing order.
 
-    The equation of the motor gets a column max(|phi| - k, 0) sign(phi) for each knee k. It is
-    linear in its coefficients: the columns of many places are filtered once, and their equations
-    are solved for every place and pair of places. Beside them they have the polynomial, and the
-    friction by load of the estimator: without this friction, the places are less exact.
+    The equation of the motor gets a column max(|phi| - k, 0) sign(phi) for each knee k. The
+    equation is linear in its coefficients. So the columns of many places are filtered once, and the
+    equations are solved for every place and pair of places. Beside them they have the polynomial,
+    and the friction by load of the estimator: without this friction, the places are less exact.
 
     T      time between samples [s]
     gamma  gear ratio

@@ -32,15 +32,15 @@ _ERROR_OF_B = 0.15
 no columns for. There the error is up to five times the interval, which contains only chance."""
 _MIDDLE = "not known: the middle of what identify holds possible"
 _NOT_KNOWN = (WIDE_PRIOR, NOT_YOURS, _MIDDLE)
-"""Comments of values that the next log may tell."""
+"""Comments of values that the next log may determine."""
 
 
 def update(document: tomlkit.TOMLDocument, found: Identified, joint: str = "") -> list[str]:
     """Sets what is determined in [parameters] and [ports.tau], everything in [identified]; joint is
     one of several in the document.
 
-    What is not determined gets a wide prior, unless the file has one above 0. If nobody has set its
-    value either, a comment says so: no value of another robot stays unnoticed.
+    Undetermined values get a wide prior, unless the file has a prior above 0. If nobody has set
+    such a value, a comment marks it, so that no value of another robot stays unnoticed.
 
     Returns the keys that were set.
     """
@@ -104,8 +104,8 @@ def update(document: tomlkit.TOMLDocument, found: Identified, joint: str = "") -
 
 
 def _unknown(found: Identified) -> dict[str, tuple[float, str]]:
-    """Values of the motor data that are not determined, with a comment, by parameter: the middle of
-    the positive part of the interval, if there is one."""
+    """Values for undetermined motor data, with a comment, by parameter: the middle of the positive
+    part of the interval, if any."""
     values = {}
     for name, own in (("B", found.B), ("D_theta", found.D_theta)):
         quantity = found.quantities.get(name)
@@ -168,7 +168,7 @@ def _give_to_the_joints(document: tomlkit.TOMLDocument, start: Mapping[str, floa
 
 
 def _is_not_known(name: str, item: Item, start: Mapping[str, float]) -> bool:
-    """Whether a parameter has a value that nobody knows; start has the values of the FMU."""
+    """Whether nobody has set the value of a parameter; start has the values of the FMU."""
     comment, value = item.trivia.comment.rstrip(), item.unwrap()
     if not comment.endswith(_NOT_KNOWN):
         return False

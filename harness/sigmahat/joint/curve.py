@@ -26,7 +26,7 @@ class Branch:
 
     set_point: float  #: [1]
     reach: Range
-    """Range of the measured deformation at this set-point [rad]; outside, the curve is a guess."""
+    """Range of the measured deformation at this set-point [rad]; outside, it is extrapolated."""
     phi: Array  #: Deformation [rad], from below this range to above this range.
     tau_e: Array  #: Flexibility torque [N.m]
     tau_e_std: Array | None
@@ -51,7 +51,7 @@ class Branch:
 
 @dataclass(frozen=True)
 class Curve:
-    """The torque and stiffness that an estimator has learned from a log."""
+    """Torque and stiffness that an estimator has found from a log."""
 
     polynomial: Polynomial  #: Polynomial of the torque.
     branches: Sequence[Branch]
@@ -133,13 +133,13 @@ def read_curve(path: Path, polynomial: Polynomial) -> Curve:
     except OSError as error:
         raise ValueError(f"{path}: {error.strerror}; {again}") from error
     if [name.partition(" [")[0] for name in table.column_names] != list(_UNITS):
-        raise ValueError(f"{path}: expected the curve that `sigmahat estimate` writes; {again}")
+        raise ValueError(f"{path}: expected a stiffness curve of `sigmahat estimate`; {again}")
     if not table.num_rows:
         return Curve(polynomial, ())
     empty = [name for name in table.column_names if pa.types.is_null(table[name].type)]
     columns = numeric_columns(table.drop_columns(empty))
     if missing := set(_UNITS) - set(columns) - {name.partition(" [")[0] for name in empty}:
-        raise ValueError(f"{path}: no numbers in column {min(missing)!r}; {again}")
+        raise ValueError(f"{path}: column {min(missing)!r} has no numbers; {again}")
     branches = []
     for setting in np.unique(columns["setPoint"]):
         own = {name: x[columns["setPoint"] == setting] for name, x in columns.items()}

@@ -1,7 +1,6 @@
 """The start values of a data sheet as a file for another tool: SSV, MATLAB, Modelica.
 
-Each number is written with all of its digits, so that the FMU gets what was learned, to the last
-bit.
+Each number has all digits, so that the FMU gets the estimate to the last bit.
 """
 
 import re
@@ -55,7 +54,7 @@ def _starts(sheet: Sheet, fmu: Fmu) -> Iterator[_Start]:
 
 def _head(sheet: Sheet) -> Iterator[str]:
     """Lines about the purpose of the file and the origin of its values."""
-    yield f"Start values of {sheet.fmu.name}.fmu, with which it starts from what was learned."
+    yield f"Start values with which {sheet.fmu.name}.fmu continues from the estimate below."
     yield from origin(sheet)
 
 
@@ -70,8 +69,8 @@ def _ssv(sheet: Sheet, fmu: Fmu, starts: list[_Start], name: str) -> str:
     units = {s.variable.unit for s in listed}
     if re.search(r"[\x00-\x1f\ud800-\udfff\ufffe\uffff]", name):
         raise ValueError(
-            f"the file name {name!r} is also the name of the contents: expected characters that "
-            "XML allows; choose another name with --out"
+            f"file name {name!r}: expected characters that XML allows, because the file contains "
+            "its name; choose another name with --out"
         )
     return (
         environment(_TEMPLATES)
@@ -180,8 +179,8 @@ def _identifier(name: str) -> None:
     """Raises ValueError for a name that no function and no record can have."""
     if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name) or name in _RESERVED:
         raise ValueError(
-            f"the file name {name!r} is also the name of the contents: expected letters, digits "
-            "and _, a letter first, and no keyword; choose another name with --out"
+            f"file name {name!r}: expected letters, digits and _, a letter first, and no keyword "
+            "of the language; choose another name with --out"
         )
 
 

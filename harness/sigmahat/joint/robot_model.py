@@ -26,8 +26,8 @@ _EXACT = 1e-3  # error of a polynomial, relative to its largest torque, that is 
 _MISSING = {
     "mjcf": "",
     "sdf": "SDF has no rotor inertia: the link rotor has this inertia, at the gear output.",
-    "urdf": "URDF has no spring: the element gazebo has the spring, for Gazebo alone. URDF has no "
-    "rotor inertia: the link rotor has this inertia, at the gear output.",
+    "urdf": "URDF has no spring: the element gazebo contains it, and only Gazebo reads it. URDF "
+    "has no rotor inertia: the link rotor has this inertia, at the gear output.",
     "drake": "Drake has no Coulomb friction in a joint: it does not use the element friction.",
 }
 
@@ -99,8 +99,8 @@ def _spring(sheet: Sheet, reach: Range, degree: int) -> Spring:
     stiffness = np.trim_zeros(shifted[1:], "b").tolist() or [0.0]
     if not stiffness[0] > 0:
         raise ValueError(
-            f"the stiffness is {stiffness[0]:.4g} N.m/rad where the spring has no torque: expected "
-            "a value above 0; see `sigmahat check`"
+            f"the stiffness of the unloaded spring is {stiffness[0]:.4g} N.m/rad: expected a value "
+            "above 0; see `sigmahat check`"
         )
     error = float(np.max(np.abs(fitted(phi) - torque)) / max(np.max(np.abs(torque)), 1e-300))
     return Spring(reference, tuple(stiffness), error)
@@ -113,7 +113,7 @@ def _zero(torque: Polynomial, phi: np.ndarray[tuple[int], np.dtype[np.float64]])
     roots = torque.roots()
     real = roots[np.abs(roots.imag) <= 1e-9 * np.abs(roots)].real
     if not len(real):
-        raise ValueError("the torque of the spring is nowhere 0: its deformation has no reference")
+        raise ValueError("expected a deformation at which the spring has no torque, found none")
     return float(real[np.argmin(np.abs(real - (phi[0] + phi[-1]) / 2))])
 
 
@@ -126,7 +126,7 @@ def write_model(sheet: Sheet, kind: str, path: Path) -> None:
     """
     reach = sheet.polynomial.phi
     if reach is None:
-        raise ValueError("no deformation in the sheet: expected the sheet of a joint that moved")
+        raise ValueError("no deformation in the data sheet: expected data of a joint that moved")
     name = one_line(path.name.partition(".")[0]).replace(" ", "_")
     parameters = _parameters(sheet)
     spring = _spring(sheet, reach, degree=3 if kind == "mjcf" else 1)
@@ -162,9 +162,9 @@ _SHOWN = 0.01  # fraction of the largest torque: a smaller effect is not listed
 def _limits(sheet: Sheet, spring: Spring, reach: Range) -> Iterator[str]:
     """Lines about what the model does not show of the joint."""
     low, high = reach
-    yield f"The data have deformations from {low:.4g} to {high:.4g} rad; outside is a guess."
+    yield f"The deformation was {low:.4g} to {high:.4g} rad; beyond this, it is extrapolated."
     if spring.error > _EXACT:
-        yield f"This spring differs from the data by up to {100 * spring.error:.2g} %."
+        yield f"The spring of this model differs from the data by up to {100 * spring.error:.2g} %."
     p, setting, absent = sheet.parameters, sheet.at_the_end.set_point, []
     torque = float(np.max(np.abs(sheet.polynomial.at(np.array(reach), setting)[0])))
     shown = {"hysteresis": _SHOWN * torque, "load_friction": _SHOWN, "delay": 0.0}

@@ -1,5 +1,5 @@
-"""The data sheet of a joint, `joint.json`: results of logs for people, scripts and other tools; and
-start values of the FMU that continue from these results.
+"""The data sheet of a joint, `joint.json`: results for people, scripts and other tools, and start
+values with which the FMU continues from these results.
 
 Numbers are written with all of their digits, so that a reader gets exactly the estimates.
 """
@@ -53,7 +53,7 @@ class Polynomial:
     eta: list[list[float]]  #: [size: powers of phi x powers of the set-point]
     units: list[list[Text]]  #: Units of eta; phi is in rad, the set-point has no unit.
     phi: Range | None
-    """Range of the measured deformation [rad]; outside, the polynomial is a guess."""
+    """Range of the measured deformation [rad]; outside, the polynomial is extrapolated."""
     set_point: Range | None  #: Range of the set-point in the data [1].
 
     def at(self, phi: Array, set_point: float | Array) -> tuple[Array, Array]:
@@ -130,7 +130,7 @@ class Sheet:
     parameters: dict[str, Parameter]
     rests_on: RestsOn
     start_values: dict[str, bool | int | float | str]
-    """Start values of the FMU by name, with which the FMU starts from what was learned."""
+    """Start values of the FMU by name, with which the FMU continues from the estimate."""
     check: Check
 
 
@@ -181,7 +181,7 @@ def polynomial(
 
 
 _MOST_POWERS = 8  # largest rls.n of the FMU
-_MOST_COEFFICIENTS = 24  # with more, the FMU may have no column left for everything else
+_MOST_COEFFICIENTS = 24  # limit, so that columns remain in the FMU for further effects
 _SAME = 1e-6  # relative difference of two stiffnesses by rounding
 
 

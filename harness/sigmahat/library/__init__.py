@@ -1,1 +1,1 @@
-"""The C library on arrays, without an FMU between."""
+"""The C library for arrays, without an FMU."""

@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 RECORD = ("sigma", "sigma_std", "tau_e", "phi", "misfit", "confident", "valid")
 """Outputs that are recorded by default."""
 
-POINT = ("tau_e", "tau_e_std", "sigma", "sigma_std")  # of evaluate(), in the order of sh_point
+POINT = ("tau_e", "tau_e_std", "sigma", "sigma_std")  # results of evaluate(), as in sh_point
 
 _LONG = 1.0  # [s] a motion that is compared with range.phi
 _FAR, _WIDE = 1.2, 8.0  # ratio of the largest deformation to range.phi, and inverse ratio
@@ -30,11 +30,11 @@ _NEEDED = {
 
 
 class Estimator:
-    """The estimator of StiffnessEstimator.fmu, without an FMU between, for one joint or many.
+    """The estimator of StiffnessEstimator.fmu, without the FMU, for one joint or many.
 
     The results equal the results of the FMU, to the last bit. Messages of the FMU are missing, but
     the outputs valid and doubt report the same. `run` logs a warning if range.phi does not fit.
-    The learned curve stays from call to call, until reset(). A copy, by `copy.copy`, is
+    The estimated curve stays from call to call, until reset(). A copy, by `copy.copy`, is
     independent. Other threads of Python run during a call. An object may be used by one thread at a
     time, and cannot be pickled. Memory: 133 kB a joint.
 
@@ -52,13 +52,13 @@ class Estimator:
     ) -> None:
         """Starts the estimator.
 
-        The parameters have their names in the FMU, enumerations take an item name; parameters that
-        are not given have the start values of the FMU. A sequence has a mapping for each joint. A
+        The parameters have their names in the FMU, and enumerations take an item name. Missing
+        parameters have the start values of the FMU. A sequence has a mapping for each joint. A
         single mapping is for all joints, and the first samples give the number of joints. `record`
         names the outputs that run() and tick() return.
 
-        Raises ValueError for a name that the FMU does not have, and for a value that does not fit
-        or is out of its range; RuntimeError if this installation has no library for this platform.
+        Raises ValueError for an unknown name, and for a value that does not fit or is out of its
+        range. Raises RuntimeError if the installation has no library for this platform.
         """
         several = not isinstance(parameters, Mapping)
         given = list(parameters) if not isinstance(parameters, Mapping) else [parameters]
@@ -109,7 +109,7 @@ class Estimator:
         shape = arrays["theta"].shape
         if len(shape) not in (1, 2) or any(each.shape != shape for each in arrays.values()):
             shapes = ", ".join(f"{name} {each.shape}" for name, each in arrays.items())
-            raise ValueError(f"expected arrays of one shape, (N,) or (joints, N), got {shapes}")
+            raise ValueError(f"expected equal shapes, (N,) or (joints, N), got {shapes}")
         self._take_shape(shape[:-1])
         joints, samples = len(self._joints.memory), shape[-1]
         outputs = {name: self._joints.empty(name, joints, samples) for name in self._record}
@@ -138,7 +138,7 @@ class Estimator:
             needed = self._need(dict(zip(INPUTS, values, strict=True)))
             shapes = {np.shape(each) for each in values if each is not None} - {()}
             if len(shapes) > 1 or any(len(shape) > 1 for shape in shapes):
-                raise ValueError(f"expected numbers or arrays of one shape (joints,), got {shapes}")
+                raise ValueError(f"expected numbers, or arrays of shape (joints,), got {shapes}")
             self._take_shape(shapes.pop() if shapes else self._shape or ())
             self._tick = self._prepared(needed)
         return self._tick(values)
@@ -183,14 +183,14 @@ class Estimator:
         return self._joints.stride
 
     def tune(self, parameters: Mapping[str, Value]) -> None:
-        """Changes tunable parameters of all joints; what was learned stays.
+        """Changes tunable parameters of all joints; the estimate stays.
 
         Raises ValueError, and changes nothing, for a name or value that does not fit, and for a
         parameter that is fixed.
         """
         for name in parameters:
             if self._joints.fmu.variable(name, "parameter").variability != "tunable":
-                raise ValueError(f"{name} is fixed: give it when the estimator is made")
+                raise ValueError(f"{name} cannot be changed: make a new Estimator with it")
         before = self._joints.memory.copy()
         try:
             for joint in range(len(before)):
@@ -203,7 +203,7 @@ class Estimator:
         self._tick = None
 
     def reset(self) -> None:
-        """Forgets all that was learned; parameters stay as they are."""
+        """Deletes the estimate; parameters do not change."""
         self._joints.start()
 
     def __copy__(self) -> Estimator:
@@ -216,7 +216,7 @@ class Estimator:
         return self.__copy__()
 
     def __reduce__(self) -> str:
-        raise TypeError("an Estimator cannot be pickled; make one where it is needed")
+        raise TypeError("an Estimator cannot be pickled; make one in each process")
 
     def _compare_with_range(self, thetas: Array, qs: Array) -> None:
         """Logs a warning, once, if the motion is far from range.phi, by which priors are scaled."""

@@ -162,5 +162,5 @@ class Joints:
 def _library() -> ctypes.CDLL:
     library = native.library()
     if library.sh_joint_guid().decode() != installed("StiffnessEstimator").description.guid:
-        raise RuntimeError("the library and StiffnessEstimator.fmu are of two builds; build again")
+        raise RuntimeError("StiffnessEstimator.fmu and library are of two builds; build both again")
     return library

@@ -45,7 +45,7 @@ class Endpoints:
         wanted = self._session.columns
         lacking = [each for each in wanted if each not in titles] if titles else []
         if lacking:
-            raise ValueError(f"--columns lacks {', '.join(lacking)}, which the configuration names")
+            raise ValueError(f"--columns lacks {', '.join(lacking)} of the configuration; add it")
         decoders = partial(Decoder, wanted, titles)
         kind, _, port = name.partition(":")
         if name == "ros2":

@@ -126,7 +126,7 @@ class LiveJoint:
         self.ports = {n: LivePort(n, p, self.T, self.longest_gap) for n, p in ports.items()}
         if not any(port.column for port in ports.values()):
             raise LogError(
-                f"{configuration.path}: no port has a column; name columns of the messages"
+                f"{configuration.path}: expected a column for at least one port, found none"
             )
         unit = configuration.time.unit if configuration.time.column else "ns"
         for name in ("", *ports):

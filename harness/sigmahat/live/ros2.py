@@ -1,8 +1,8 @@
 """Topics of ROS 2 over DDS, without an installation of ROS: joint states in, estimates and
 diagnostics out.
 
-A column of the configuration names topic, field and joint as in a bag:
-"/joint_states.position[knee]"; "/joint_states.time" are the times of the topic [s], since the first
+A column of the configuration names topic, field and joint as in a bag,
+"/joint_states.position[knee]". "/joint_states.time" is the time of the topic [s], since the first
 message. ROS_DOMAIN_ID and CYCLONEDDS_URI have their usual effect.
 """
 

@@ -39,7 +39,7 @@ _NEEDED = {"Residual": ("theta", "q", "tau"), "Sensor": ("q", "tau_e_sensor"), "
 
 def _not_zero(value: float) -> float:
     if value == 0:
-        raise PydanticCustomError("zero", "fill in the value of your device (data sheet)")
+        raise PydanticCustomError("zero", "fill in the value from the data sheet of your device")
     return value
 
 
@@ -172,7 +172,7 @@ def checked_configuration(
             what = "has no column" if port.value is None else "has a column and a value"
             raise LogError(
                 f"{path}: [ports.{name}] {what}; name a column of the log, or set value "
-                "where the port does not change"
+                "if the signal is constant"
             )
     _refuse_repeated(file, path)
     values = dict(toml_file.dotted(file.parameters))
@@ -190,7 +190,7 @@ def _refuse_repeated(file: _File, path: Path) -> None:
             continue
         if port.column in used:
             raise LogError(
-                f"{path}: [{used[port.column]}] and [ports.{name}] both have the column "
+                f"{path}: [{used[port.column]}] and [ports.{name}] both use the column "
                 f"{port.column!r}; name another column for one of them"
             )
         used[port.column] = f"ports.{name}"

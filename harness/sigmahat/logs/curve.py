@@ -29,9 +29,9 @@ _POINTS = 3000  # approximate number of points that are shown
 
 
 def since_change(outputs: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
-    """The outputs from the last change of the stiffness on: what was before shows another curve.
+    """The outputs from the last change of the stiffness on: earlier outputs show another curve.
 
-    All of them without a change, and if the regression has used nothing since.
+    All outputs if there is no change, or if the regression has used no sample since.
     """
     begins = restarts(outputs["change_age"])
     first = int(begins[-1]) if len(begins) and _used(outputs)[begins[-1] :].any() else 0
@@ -45,7 +45,7 @@ def restarts(age: NDArray[np.float64], before: float = -1.0) -> NDArray[np.intp]
 
 
 def _used(outputs: Mapping[str, NDArray[Any]]) -> NDArray[np.bool_]:
-    """The ticks from which the estimator has learned."""
+    """The ticks that the regression used."""
     return outputs["valid"].astype(bool) & (outputs["a"] > 0)
 
 
@@ -59,7 +59,7 @@ class MeasuredPoints:
 
 
 def points_of(outputs: Mapping[str, NDArray[Any]], method: str) -> MeasuredPoints:
-    """The points at the ticks from which the estimator has learned.
+    """The points at the ticks that the regression used.
 
     FilteredRegression filters all signals and estimates friction, inertia and bias with the curve.
     Its prediction error is added to the torque of the curve, which gives a partial residual.
@@ -135,9 +135,9 @@ def stiffness_at(
 ) -> dict[str, Array]:
     """The outputs _OUTPUTS at each point, by name, [size: points].
 
-    Before each point a sample is missing. After such a gap FilteredRegression learns nothing until
-    its filters have settled. Here the filters never settle, so the outputs depend only on what was
-    learned before. The slave cannot be used for anything else afterwards.
+    Before each point a sample is missing. After such a gap FilteredRegression uses no sample until
+    its filters have settled. Here the filters never settle, so the outputs depend only on the
+    earlier estimate. The slave cannot be used for anything else afterwards.
 
     slave   with the method FilteredRegression, at the time t_0 [s]
     names   of inputs, theta and q included

@@ -73,7 +73,7 @@ _AMPLITUDE_95 = 2.4477
 
 
 def data_sheet(replay: Replay, curve: Curve) -> sheet.Sheet:
-    """The sheet of what an estimator has learned at the end of a replay, and its curve."""
+    """The data sheet from an estimator at the end of a replay, and its curve."""
     slave, every, configuration = replay.slave, replay.every, replay.configuration.path
     identified = _identified(replay.configuration)
     last, doubt = replay.statistics.last, replay.statistics.last_doubt
@@ -130,8 +130,8 @@ def _parameters(
 ) -> dict[str, sheet.Parameter]:
     """Motor data, and other estimates of FilteredRegression.
 
-    The FMU gives no intervals. An interval is from `identify`, if known, else from the prior. One
-    that does not contain the value of the estimator is made wider.
+    The FMU gives no intervals. An interval is from `identify`, if known, else from the prior. An
+    interval that does not contain the value of the estimator is made wider.
     """
     found = {"gamma": sheet.Parameter(float(every["motor.gamma"]), "1", None, "exact")}
     claims = every["method"] == "FilteredRegression"

@@ -118,18 +118,17 @@ def estimate(
 ) -> Estimate:
     """Replays the log. Without a folder the outputs at all ticks are in the result, as `series`.
 
-    With a folder, which exists, it writes into it: the table (estimate.csv or .parquet), the curve
-    (estimate.curve.csv) and its measured points (estimate.points.csv), the figure
-    (estimate.png and .svg), the data sheet of the joint (joint.json), what was learned
-    (state.json), and notes for the report (estimate.json), also with findings of the checks:
-    severity and sentence of each; with mcap also estimate.mcap.
+    If an existing `folder` is given, it gets these files: the table (estimate.csv or .parquet), the
+    curve (estimate.curve.csv), its measured points (estimate.points.csv), and the figure
+    (estimate.png and .svg). It also gets the data sheet of the joint (joint.json), the state of
+    the estimator (state.json), and notes for the report (estimate.json), with severity and sentence
+    of each finding. With mcap, it also gets estimate.mcap.
 
-    Now and then progress is called with the thousandths of the log done since the last call.
+    progress is called from time to time with the thousandths of the log done since the last call.
     With start_from, a folder of results or its state.json, the estimator starts from this state.
 
-    Raises LogError for a log and configuration that do not fit, and for a start_from that does not
-    fit the configuration; FmuError if the FMU refuses; ModuleNotFoundError without the package
-    mcap.
+    Raises LogError if log, configuration and start_from do not fit together, FmuError if the FMU
+    refuses, and ModuleNotFoundError without the package mcap.
     """
     learned = None if start_from is None else read_learned(Path(start_from))
     with Slave(installed("StiffnessEstimator"), "estimator") as slave:

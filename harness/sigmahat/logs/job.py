@@ -138,7 +138,7 @@ class Changes:
         self._powers = np.repeat(powers_of_phi(bool(every["rls.symmetric"]), n), m)
         self._powers_of_set_point = np.tile(np.arange(m), n)
         self._T, self._ticks, self._age, self._followed = T, 0, -1.0, True
-        self._eta: NDArray[np.float64] | None = None  # of the last confident tick since a change
+        self._eta: NDArray[np.float64] | None = None  # at the last confident tick since a change
         self._at = 0.0, 0.0  # deformation and set-point of the last change
         self._before: float | None = None  # the stiffness at this point
         self.found: list[StiffnessChange] = []  # all changes until now
@@ -178,7 +178,7 @@ class Replay:
     def __init__(
         self, slave: Slave, log: Log, configuration: Configuration, learned: Learned | None = None
     ) -> None:
-        """Initialises the slave, gives it the learned state, and samples the log.
+        """Initialises the slave, restores the learned state in it, and samples the log.
 
         Raises LogError if log or state do not fit the configuration, FmuError if the FMU refuses.
         """

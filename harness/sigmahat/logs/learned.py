@@ -1,4 +1,4 @@
-"""`state.json`: what the estimator has learned from a log, to continue with the next log.
+"""`state.json`: the state of the estimator after a log, to continue with the next log.
 
 The JSON file has the identity of the FMU, the logs, and the state of the FMU from
 fmi2SerializeFMUstate, in base64. The state contains the parameters of the estimator.
@@ -19,7 +19,7 @@ from sigmahat.logs.log import LogError
 from sigmahat.logs.replay import gap
 
 _AGAIN = "run `sigmahat estimate` on the first log again"
-_OTHER = f"a learned state contains its parameters: use these parameters, or {_AGAIN}"
+_OTHER = f"both must have the same parameters: change the configuration, or {_AGAIN}"
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ LEARNED = Format("state.json", "sigmahat learned state", 1, _File)  # format of 
 def write_learned(
     slave: Slave, every: Mapping[str, Value], logs: Sequence[LearnedLog], path: Path
 ) -> None:
-    """Writes what a slave has learned from logs; `every` has the parameters of the slave."""
+    """Writes the state of a slave after its logs; `every` has the parameters of the slave."""
     contents = _File(
         format=LEARNED.name,
         version=LEARNED.version,
@@ -81,7 +81,7 @@ def read_learned(path: Path) -> Learned:
     try:
         state = base64.b64decode(file.state, validate=True)
     except ValueError as error:
-        raise LogError(f"{path}: damaged: state is not base64; {_AGAIN}") from error
+        raise LogError(f"{path}: damaged: its state is not base64; {_AGAIN}") from error
     return Learned(path, file.fmu, file.logs, state)
 
 
@@ -97,7 +97,7 @@ def go_on(slave: Slave, learned: Learned, every: Mapping[str, Value], configurat
     theirs, ours = learned.fmu, FmuId.of(slave.fmu)
     if theirs != ours:
         told, wanted = (f"{f.name}.fmu {f.version} ({f.guid})" for f in (theirs, ours))
-        raise LogError(f"{learned.path}: learned by {told}, expected {wanted}; {_AGAIN}")
+        raise LogError(f"{learned.path}: state of {told}, expected {wanted}; {_AGAIN}")
     try:
         t_0 = slave.restore(learned.state)
     except FmuError as error:
@@ -109,7 +109,7 @@ def go_on(slave: Slave, learned: Learned, every: Mapping[str, Value], configurat
         name = min(differ, key=lambda each: first.get(each, 2))
         more = f" (and {len(differ) - 1} more)" if len(differ) > 1 else ""
         raise LogError(
-            f"{configuration}: {name} = {every[name]}, but {learned.path} was learned with "
+            f"{configuration}: {name} = {every[name]}, but {learned.path} was written with "
             f"{own[name]}{more}; {_OTHER}"
         )
     return gap(slave, t_0, every)

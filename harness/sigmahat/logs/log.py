@@ -142,8 +142,8 @@ def is_number(text: str) -> bool:
 MOST_COLUMNS = 2000
 _NUMBERS, _SMALL = 15_000_000, 10_000_000  # allowed numbers in a file up to this size [bytes]
 _TOGETHER = 2  # factor for all columns together, where they are needed at the same time
-_NUMBERS_PER_BYTE = 3  # for further bytes; without compression, at most 1 is possible
-_BYTES = 400_000_000  # of all columns of a file that is read as a whole
+_NUMBERS_PER_BYTE = 3  # limit for further bytes; without compression, at most 1 is possible
+_BYTES = 400_000_000  # limit for all columns of a file that is read as a whole
 MOST_TEXT = 100_000_000  # characters of a column of text at a time
 
 
@@ -159,8 +159,8 @@ def check_together(path: Path, numbers: int) -> None:
     # For fewer numbers, the size of the file does not matter.
     if numbers > _TOGETHER * _NUMBERS and numbers > (most := _TOGETHER * _most_numbers(path)):
         raise LogError(
-            f"{path}: {numbers} numbers, expected at most {most} to guess from; "
-            "save the columns of one joint alone, or fewer rows"
+            f"{path}: expected at most {most} numbers, got {numbers}; "
+            "save only the columns of one joint, or fewer rows"
         )
 
 
@@ -168,8 +168,8 @@ def check_columns(path: Path, columns: int) -> None:
     """Raises LogError for too many columns."""
     if columns > MOST_COLUMNS:
         raise LogError(
-            f"{path}: {columns} columns, expected at most {MOST_COLUMNS}; "
-            "save the columns of one joint alone"
+            f"{path}: expected at most {MOST_COLUMNS} columns, got {columns}; "
+            "save only the columns of one joint"
         )
 
 
@@ -178,8 +178,8 @@ def check_numbers(path: Path, numbers: int) -> None:
     # For fewer numbers, the file, which may have vanished, does not matter.
     if numbers > _NUMBERS and numbers > _most_numbers(path):
         raise LogError(
-            f"{path}: {numbers} numbers or more in a file of {path.stat().st_size / 1e6:.3g} MB, "
-            f"expected at most {_most_numbers(path)}; save it without compression, or in parts"
+            f"{path}: expected at most {_most_numbers(path)} numbers in a file of this size, got "
+            f"{numbers} or more; save it without compression, or in parts"
         )
 
 
@@ -188,6 +188,6 @@ def check_bytes(path: Path, size: int) -> None:
     most = max(_BYTES, 8 * _most_numbers(path))
     if size > most:
         raise LogError(
-            f"{path}: {size / 1e6:.0f} MB in a file of {path.stat().st_size / 1e6:.3g} MB, "
-            f"expected at most {most / 1e6:.0f} MB; save it without compression, or in parts"
+            f"{path}: expected at most {most / 1e6:.0f} MB of data in a file of this size, got "
+            f"{size / 1e6:.0f} MB; save it without compression, or in parts"
         )

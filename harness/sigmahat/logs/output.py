@@ -2,7 +2,7 @@
 
 A CSV log gives `estimate.csv`, every other log `estimate.parquet`: the log with the estimates. The
 titles of the estimates are "estimate.sigma [N.m/rad]" and so on; "estimate.t [s]" is the time of
-the tick since the start of the log. `estimate.json` has what no other file of the folder has.
+the tick since the start of the log. `estimate.json` has data that no other file of the folder has.
 
 In Parquet the estimates are float32, rounded to five digits: three or four digits are accurate. The
 columns of the log are unchanged. Times are float64, because times of hours need more digits.
@@ -37,7 +37,7 @@ from sigmahat.logs.sampling import Samples
 _ROWS = 1 << 15
 _STEM = "estimate"
 _PREFIX = "estimate."
-_REPEATED = 2  # from this number of rows per distinct value on, a dictionary is shorter
+_REPEATED = 2  # rows per distinct value, from which a dictionary is shorter
 _TIME = "t"
 _TIMES = (_TIME, "change_age")
 _DOUBT, _VALID = "doubt", "valid"  # a text, and a flag
@@ -109,8 +109,8 @@ class EstimateWriter(AbstractContextManager["EstimateWriter"]):
 
 
 def _rounded(values: NDArray[np.float64]) -> NDArray[np.float32]:
-    """The nearest numbers with 16 bits behind the leading one: what follows is noise and would be a
-    third of the file.
+    """The nearest numbers with 16 bits after the leading bit. The other bits are noise, and would
+    be a third of the file.
     """
     bits = values.astype(np.float32).view(np.uint32)
     return ((bits + 0x40) & 0xFFFFFF80).view(np.float32)
@@ -214,7 +214,7 @@ class EstimateTable(Mapping[str, NDArray[np.float64]]):
         self.units = dict(names)  # unit of each output, None for flags
         self._titles = dict(zip(self.units, titles, strict=True))
         if not self.units.keys() >= {*_TIMES, "sigma", _VALID, _DOUBT}:
-            raise LogError(f"{path}: no table of `sigmahat estimate`; run it again")
+            raise LogError(f"{path}: expected a table of `sigmahat estimate`; run it again")
         del self._titles[_DOUBT]
         self.t = self._log.read(self._titles.pop(_TIME))  # times of the rows [s]
         self.used = self._log.read(self._titles.pop(_VALID)).astype(np.bool_)

@@ -34,7 +34,7 @@ def reduce(t: NDArray[Any], signals: Mapping[str, NDArray[Any]], budget: int = B
 
     Of a longer signal, half of the kept values are all samples around the middle, where single
     counts of an encoder show. The other half are minimum and maximum of each bucket, at its first
-    time. t and the signals have the same shape (N,), N >= 1.
+    time. Time t and the signals have the same shape (N,), N >= 1.
     """
     half = min(max(budget // max(len(signals), 1), 8), _MOST) // 2
     t = np.asarray(t, dtype=np.float64)
@@ -139,7 +139,7 @@ def _band(sigma: NDArray[Any], reduced: Reduced, side: str) -> Band | None:
 
 
 def _with_band(shown: tuple[float, float], lines: Sequence[Curve]) -> tuple[float, float]:
-    """Limits that show the band at the end as well."""
+    """Limits that also show the band at the end."""
     ends = [float(end[-1]) for line in lines for end in line.band or () if np.isfinite(end[-1])]
     return min([shown[0], *ends]), max([shown[1], *ends])
 
@@ -240,7 +240,7 @@ def curve_panels(curve: joint.Curve, points: MeasuredPoints) -> Iterator[Panel]:
 def _scale(curves: list[Curve]) -> tuple[float, float] | None:
     """Range of the axis: the range of the data, without single points that are far off.
 
-    Of a band that is wide, as much is shown as the curve is large: else the curve is a line at 0.
+    A wide band is shown only up to the size of the curve: else the curve would be a line at 0.
     """
     shown = []
     for each in curves:

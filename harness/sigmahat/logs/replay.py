@@ -29,9 +29,9 @@ _REASON = "doubt"  # output that is an enumeration; the names of its items are r
 
 
 def parameters(fmu: Fmu, configuration: Configuration) -> dict[str, Value]:
-    """Start values of the FMU: those of the configuration, encoders of columns in counts, the gear
-    ratio of theta as motor.gamma, if that is 0 or not given, and filters that are not faster than
-    the samples.
+    """Start values of the FMU: values of the configuration, encoders of columns in counts, and
+    filters not faster than the samples. A motor.gamma that is 0 or missing becomes the gear ratio
+    of theta.
 
     encoder.theta_c is set as well, though it has no effect: the contract of the FMU names it.
 
@@ -69,8 +69,8 @@ def play(
     """Yields the outputs of an initialised estimator by name, a chunk of ticks at a time.
 
     The estimator has reached the time t_0 [s]. The sample at t_0 + t_k is the input of the tick at
-    that time; ports that are not configured keep their values, which are 0 at the start and after
-    a gap.
+    that time. Ports without a configuration keep their values, which are 0 at the start and after a
+    gap.
 
     more  Real outputs that are recorded besides OUTPUTS
     """
@@ -98,8 +98,9 @@ def coefficients(slave: Slave, n: int, m: int) -> Sequence[Sequence[float]]:
 def gap(slave: Slave, t_0: float, every: Mapping[str, Value]) -> float:
     """Samples that are missing, at the time t_0 [s]: the filters start again with the next sample.
 
-    What is learned stays. It is as after a gap in a log: FilteredRegression needs one missing
-    sample, Paper2011 as many as its residual needs to give up what it has integrated (sigmahat.h).
+    What is learned stays. The effect is as after a gap in a log: FilteredRegression needs one
+    missing sample, Paper2011 as many as its residual needs to give up what it has integrated
+    (sigmahat.h).
 
     every  parameters of the slave
 

@@ -1,13 +1,14 @@
-"""From the columns of a log to the inputs of the estimator at its ticks.
+"""Converts the columns of a log to inputs of the estimator at its ticks.
 
-Tick k is at t_0 + k T, t_0 being the first time in the log. What had to be done to the samples is
-noted, in sentences for people.
+Tick k is at t_0 + k T, t_0 being the first time in the log. Notes describe the processing of the
+samples, in sentences for people.
 
 A sample at a tick, within a thousandth of the period, is used without a change. A slower, faster or
 uneven column has samples elsewhere. Ticks between two such samples are interpolated linearly, if
 the samples are not further apart than the longest gap. The longest gap is configured, or three
-times the usual interval of the column. All other ticks get nan, and the estimator skips them. So a
-column with a sample for nearly every tick is only interpolated if a longest gap is configured.
+times the usual interval of the column. The values at all other ticks are nan, and the estimator
+skips these ticks. So a column with a sample for nearly every tick is only interpolated if a longest
+gap is configured.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -24,8 +25,8 @@ from sigmahat.logs.units import convert, factor, seconds, unwrap
 AT_TICK = 1e-3  # largest distance of a sample from its tick, in periods
 _USUAL_INTERVALS = 3.0
 _MOST_TICKS = 5_000_000
-_MOST_TICKS_OF_MANY_ROWS = 20  # per row: the memory for the ticks goes with the size of the log
-_MOST_TICKS_PER_ROW = 200  # else the time has another unit
+_MOST_TICKS_OF_MANY_ROWS = 20  # ticks per row; limits memory by the size of the log
+_MOST_TICKS_PER_ROW = 200  # with more, the unit of the time is wrong
 _PART = 1 << 16  # samples that are compared at a time, for the memory
 _LONG_AGO = 1e6  # [s] A time that is larger counts from 1970, or from the start of a machine.
 
@@ -73,7 +74,7 @@ def _sample(log: Log, configuration: Configuration, T: float) -> Samples:
     step = float(np.nanmedian(np.diff(rows))) if len(rows) > 1 else T
     if step > _MOST_TICKS_PER_ROW * T:
         raise LogError(
-            f"{log.path}: most rows are {step:g} s apart, the ticks {T:g} s; "
+            f"{log.path}: samplePeriod is {T:g} s, but most rows are {step:g} s apart; "
             "check time.unit and samplePeriod"
         )
     ticks = int(np.floor((end - start) / T + AT_TICK)) + 1
@@ -81,9 +82,8 @@ def _sample(log: Log, configuration: Configuration, T: float) -> Samples:
     if ticks > most:
         gap = float(np.max(np.diff(rows[np.isfinite(rows)])))
         raise LogError(
-            f"{log.path}: {end - start:g} s in steps of {T:g} s are {ticks} ticks, expected at "
-            f"most {most}; the longest gap is {gap:g} s: split the log at the pause, or take a "
-            "longer samplePeriod"
+            f"{log.path}: {ticks} steps of {T:g} s in {end - start:g} s, expected at most {most}; "
+            f"the longest gap is {gap:g} s: split the log there, or increase samplePeriod"
         )
     notes.insert(0, f"{len(rows)} rows over {end - start:.6g} s; {ticks} ticks of {T:g} s")
     rows -= start
@@ -104,7 +104,7 @@ def _sample(log: Log, configuration: Configuration, T: float) -> Samples:
         values[:, i] = _at_ticks(name, t, column, T, ticks, configuration.time.longest_gap, notes)
         if not np.isfinite(values[:, i]).any():
             raise LogError(
-                f"port {name}: no sample of its column lies in the {end - start:g} s of the log; "
+                f"port {name}: its column has no sample in the {end - start:g} s of the log; "
                 "check its delay, and time.longest_gap"
             )
     notes += _put_right(values, configuration.ports, T)
@@ -159,7 +159,7 @@ def _times(
 
 
 def _shown(times: Array, i: int) -> str:
-    """A time as it is, or from the first one on if the digits of that would hide it."""
+    """A time as text; relative to the first row if the times count from long ago."""
     if abs(times[0]) < _LONG_AGO:
         return f"{times[i]:.9g} s"
     return f"{times[i] - times[0]:.9g} s from the first row"
@@ -170,8 +170,8 @@ def _column(log: Log, name: str, port: Port, times: int, notes: list[str]) -> Ar
     values = log.read(port.column)
     if len(values) != times:
         raise LogError(
-            f"{log.path}: column {port.column!r} has {len(values)} samples, its time {times}; "
-            f"name its own times in ports.{name}.time"
+            f"{log.path}: column {port.column!r} has {len(values)} samples, its time column "
+            f"{times}; name the right time column in ports.{name}.time"
         )
     if port.wrap is not None:
         values, jumps = unwrap(values, port.wrap)
@@ -197,7 +197,7 @@ def _at_ticks(
     finite = np.isfinite(t) & np.isfinite(values)
     if not finite.any():
         raise LogError(
-            f"port {name}: its column holds no number; name another column, or remove the port"
+            f"port {name}: its column has no numbers; name another column, or remove the port"
         )
     if not finite.all():
         t, values = t[finite], values[finite]
@@ -272,8 +272,8 @@ def _skipped(values: Array, T: float) -> Iterator[str]:
 
 
 def _put_right(values: Array, ports: Mapping[str, Port], T: float) -> Iterator[str]:
-    """Moves theta or q behind gaps by whole periods of its counter, so that it went as far as the
-    other one. Motor and link go together, but for the deformation.
+    """Moves theta or q after gaps by whole periods of its counter, so that both move equally far.
+    Motor and link go together, but for the deformation.
 
     values  of the ports at the ticks [size: ticks x ports], nan where there is none; it is changed
     T       time between ticks [s]
@@ -302,8 +302,8 @@ def _put_right(values: Array, ports: Mapping[str, Port], T: float) -> Iterator[s
 def _whole_turns(values: Array, configuration: Configuration) -> Iterator[str]:
     """Moves theta or q by whole periods of its counter, so that the deformation is in range.phi.
 
-    A counter that was switched on in another turn is that far off. Nothing moves without range.phi
-    in the configuration, nor where the deformation stays beyond it.
+    A counter that was switched on in another turn is wrong by such periods. Nothing moves without
+    range.phi in the configuration, nor where the deformation stays beyond it.
 
     values  as in _put_right, after it
     """

@@ -30,7 +30,7 @@ def counts_per_turn(port: Port) -> float | None:
 
 
 def factor(name: str, port: Port) -> float:
-    """Value of the port, in its unit, per 1 in the column; without sign, zero and gear.
+    """Value of the port, in its unit, for 1 in the column; without sign, zero and gear.
 
     Raises LogError for a unit that is unknown or does not fit, and for a missing key that the unit
     needs.
@@ -39,14 +39,14 @@ def factor(name: str, port: Port) -> float:
     target = PORTS[name]
     if port.scale is not None:
         if port.unit is not None:
-            raise LogError(f"{where}: scale and unit exclude each other; remove one of them")
+            raise LogError(f"{where}: expected scale or unit, got both; remove one of them")
         return port.scale
     if port.unit is None or port.unit == target:
         return 1.0
     if port.unit == "counts":
         if target != "rad":
             raise LogError(
-                f"{where}: unit counts is an angle, expected a torque; set scale instead of unit"
+                f"{where}: expected a unit of torque, got counts, an angle; set scale instead"
             )
         return 2 * math.pi / _needed(where, port, "counts_per_turn", "counts")
     if target == "N.m" and _is(port.unit, "A"):

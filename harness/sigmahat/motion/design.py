@@ -20,17 +20,17 @@ from sigmahat.logs.log import LogError, LogInMemory
 from sigmahat.motion.joints import Array, Joint, Limits, Multisine, Ranges
 from sigmahat.runs.engine import run_all
 
-_RATIOS = (1.0, 1.618, 2.713, 4.237)  # of the frequencies: no multiples of each other
+_RATIOS = (1.0, 1.618, 2.713, 4.237)  # ratios of the frequencies: no multiples of each other
 _PHASES = (0.0, 1.0, 2.0, 3.0)
 _OF_RESONANCE = (0.15, 0.3, 0.5)  # ratio of the highest frequency to the lowest resonance
 _EXPONENTS = (1.0, 2.0)  # amplitudes fall with the frequency to this power
 _HIGHEST = 5.0  # [Hz] no motion of a stiff joint is faster
-_CYCLES = 2.0  # of the slowest sine, at least
+_CYCLES = 2.0  # least number of cycles of the slowest sine
 _RAMP = 0.15  # of the duration, at most
 _LONGEST_RAMP = 2.0  # [s]
 _COARSE = 0.02  # [s] sample period for the search of peaks
 _REST, _STEPS = 1e-6, 6
-_MARGIN = 0.97  # of the limits, for joints between the joints that are tried
+_MARGIN = 0.97  # share of the limits, for joints between the tried joints
 _COMPARED, _PROMISED = 6, 20  # number of joints: to compare candidates, and to predict the result
 
 NOT_SHOWN = 1.0  # largest ratio of half width to stiffness of a motion that shows the stiffness
@@ -40,7 +40,7 @@ NOISE = 0.003  # default noise of the torque: standard deviation divided by the 
 @dataclass(frozen=True)
 class Sensors:
     gear_ratio: float
-    counts: tuple[float, float]  # of the encoders of motor and link, per turn at the gear output
+    counts: tuple[float, float]  # counts of both encoders per turn at the gear output
     torque_gain: float  # relative standard deviation of the gain of the torque: prior.torque_gain
     noise: float  # noise of the torque of the motor at the gear output [N.m]
     T: float  # time between samples [s]

@@ -14,7 +14,7 @@ from sigmahat.logs.sampling import sample
 from sigmahat.motion.design import NOISE, Sensors
 from sigmahat.motion.joints import Joint, Limits, Ranges
 
-_COUNTS = 400_000.0  # per turn at the gear output, without a configuration
+_COUNTS = 400_000.0  # counts per turn at the gear output, without a configuration
 _PERIOD = 1e-3  # [s]
 _WITHIN = 1.2  # values of a log are multiplied and divided by this factor
 _LINK_BELOW = 20.0  # [Hz] motion of the link below this frequency is used
@@ -43,15 +43,14 @@ def of_log(log: Log, configuration: Configuration, start: float) -> Ranges:
     """
     found = estimate(log, configuration)
     if not found.curve.branches:
-        raise LogError(f"{log.path}: {found.headline}; give the limits alone, without --after")
+        raise LogError(f"{log.path}: {found.headline}; omit --after, and give only the limits")
     _, sigma, interval = stiffness_in_the_middle(found.curve.branches[0])
     low, high = interval or (sigma, sigma)
     M, D_q, weight, angle = _link(log, configuration, found)
     if min(low, M) <= 0:
         raise LogError(
-            f"{log.path}: expected a log that shows stiffness and inertia of the link, got "
-            f"{low:.3g} to {high:.3g} N.m/rad and {M:.3g} kg.m2; try `sigmahat check`, or give the "
-            "limits alone, without --after"
+            f"{log.path}: expected a positive stiffness and link inertia, got {low:.3g} to "
+            f"{high:.3g} N.m/rad and {M:.3g} kg.m2; run `sigmahat check`, or omit --after"
         )
     gamma = float(found.parameters["motor.gamma"])
     B, D_theta = gamma**2 * found.motor["B_hat"], gamma**2 * found.motor["D_theta_hat"]
@@ -81,7 +80,7 @@ def _link(
         rows.append(np.column_stack([np.gradient(velocity, T), velocity, np.sin(q), np.cos(q)]))
         torques.append(torque)
     if not rows:
-        raise LogError(f"{log.path}: no stretch without a gap that is long enough")
+        raise LogError(f"{log.path}: expected a longer part without a gap in the samples")
     X, y = np.concatenate(rows), -np.concatenate(torques)
     M, D_q, sine, cosine = np.linalg.lstsq(X, y, rcond=1e-9)[0].tolist()
     return M, D_q, float(np.hypot(sine, cosine)), float(np.arctan2(cosine, sine))

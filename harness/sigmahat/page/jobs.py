@@ -19,7 +19,7 @@ from sigmahat.logs.log import Log, LogError
 from sigmahat.page.setup import Chosen, Look, Setup
 
 _BUCKETS = 80
-_WIDTH, _HEIGHT = 160, 28  # of the line of a preview
+_WIDTH, _HEIGHT = 160, 28  # size of the line in a preview
 
 
 def look(log: Log, name: str) -> Look:
@@ -42,7 +42,7 @@ def look(log: Log, name: str) -> Look:
 
 def guessed(log: Log) -> tuple[Mapping[str, str], Chosen]:
     """The configuration of each joint of a log as `init` writes it, and a function that guesses
-    units, signs and gear of columns that the user chooses.
+    units, signs and gear of chosen columns.
     """
     columns = read_columns(log)
     joints = guess(columns)
@@ -152,7 +152,7 @@ class Jobs:
         self._later(partial(self._show, version, answer=found, busy=""))
 
     def _identify_and_estimate(self, version: int, text: str) -> None:
-        """Writes the results, and gives the setup the configuration with what was identified."""
+        """Writes the results, and gives the setup the configuration with the identified values."""
         from sigmahat.checks.check import check
         from sigmahat.checks.text import rows
         from sigmahat.files.output import output_folder

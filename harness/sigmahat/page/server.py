@@ -95,7 +95,7 @@ def _listen(token: str, port: int, window: Callable[[Document], object]) -> tupl
     except OSError as error:
         reason = error.strerror or error
         raise ValueError(
-            f"port {port} cannot be used ({reason}); leave --port out for a free port"
+            f"port {port} cannot be used ({reason}); omit --port to use a free port"
         ) from error
     tornado = _Small(
         {f"/{token}": Application(FunctionHandler(window))},

@@ -52,7 +52,7 @@ class Setup:
         self._then: Callable[[], object] | None = None
         self.windows: set[Callable[[], object]] = set()  # functions to call after every change
         self._chosen: Chosen = lambda names: {}
-        self.joints: dict[str, tomlkit.TOMLDocument] = {}  # by name; empty until they are known
+        self.joints: dict[str, tomlkit.TOMLDocument] = {}  # documents by joint; empty at first
 
     def show(self) -> None:
         for each in list(self.windows):

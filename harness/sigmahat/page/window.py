@@ -118,7 +118,7 @@ class ResultPanel:
         assert self._setup.answer is not None
         curve, points = self._setup.answer.curve, self._setup.answer.points
         if not curve.branches:
-            return [words("No curve: the estimator learned nothing from the log.")]
+            return [words("No curve: the log did not change the estimate.")]
         panels = list(curve_panels(curve, points))
         # The colours once for both plots, and what band and points are.
         legend = "".join(

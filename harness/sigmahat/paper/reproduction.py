@@ -53,7 +53,7 @@ def reproduce(
     progress   called now and then with what was done since the last call: runs, but steps if there
                is a single seed
 
-    Raises what simulate() raises, and WorkerError if a process was ended from outside.
+    Raises what simulate() raises, and WorkerError if another program ended a process.
     """
     if len(seeds) == 1:
         recording = run(scenario, seeds[0], variants=True, progress=progress)
@@ -90,10 +90,10 @@ def read_result_files(folder: Path) -> tuple[pa.Table, Mapping[str, Mapping[str,
         if next(iter(signals), None) == TIME:  # the folder may have files of other commands
             series[name] = signals
     if not series or table.column_names[:2] != [ESTIMATION, SEEDS]:
-        raise ValueError(f"{folder}: no result of `sigmahat reproduce`; run it again")
+        raise ValueError(f"{folder}: expected results of `sigmahat reproduce`; run it again")
     if len({len(signals[TIME]) for signals in series.values()}) > 1:
         raise ValueError(
-            f"{folder}: files of different lengths; run `sigmahat reproduce` again, "
+            f"{folder}: expected files of equal length; run `sigmahat reproduce` again, "
             "with an empty folder as --out"
         )
     return table, series

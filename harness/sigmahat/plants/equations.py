@@ -54,11 +54,11 @@ class PlantEquations:
     def state(self, name: str, start: ca.SX | float, scale: float) -> ca.SX:
         """State ``name``. Its start value is an expression of the parameters alone.
 
-        ``scale`` is a change of the state that matters, in its unit: the integrator keeps the error
-        of each of its steps far below ``scale + |state|`` (``fmu_src/radau.h``).
+        ``scale`` is a change of the state that matters, in its unit. The integrator keeps the error
+        of each step far below ``scale + |state|`` (``fmu_src/radau.h``).
         """
         if not 0 < scale < math.inf:
-            raise ValueError(f"state {name}: scale = {scale}; expected a finite number above 0")
+            raise ValueError(f"state {name}: expected a finite scale above 0, got {scale}")
         if name in self.states:
             raise ValueError(f"{self.name}: state {name} is declared twice")
         symbol = ca.SX.sym(name)

@@ -16,7 +16,7 @@ from sigmahat.plants.joint import (
     velocity,
 )
 
-PHASE_Q, PHASE_THETA = 0.4, 0.7  # of the eccentricity of the encoders of link and motor [rad]
+PHASE_Q, PHASE_THETA = 0.4, 0.7  # of encoder eccentricity, link and motor [rad]
 
 plant = PlantEquations("RealJointPlant")
 

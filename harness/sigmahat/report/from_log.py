@@ -59,7 +59,7 @@ def from_log(folder: Path) -> Contents:
             # A gap in the log has ticks, but no rows.
             f"{len(used)} rows over {t[-1] - t[0]:.6g} s; "
             f"{log.skipped} of {log.ticks} ticks skipped, a tick every {log.T:g} s",
-            *(["Dotted lines: changes of the stiffness, see Samples."] if log.changes else []),
+            *(["Dotted lines mark changes of the stiffness, see Samples."] if log.changes else []),
         ],
         tables,
         [
@@ -109,7 +109,7 @@ def _origin(sheet: Sheet, log: Replayed, folder: Path) -> str:
 
 
 def findings_table(findings: Sequence[tuple[str, str]]) -> TextTable:
-    note = "" if findings else "Nothing in the log contradicts the configuration."
+    note = "" if findings else "The check found no error in the configuration."
     return TextTable("Checks", ["", "finding"], list(map(list, findings)), (0, 1), note=note)
 
 
@@ -145,7 +145,7 @@ def curve_table(curve: Curve) -> TextTable:
     head, *rows = stiffness_table(curve)
     words = plain_text(polynomial_in_words(curve.polynomial))
     reach = plain_text(reach_in_words(curve))
-    note = f"The curve holds {reach}; outside (faded in the plots), it is a guess. {words}."
+    note = f"The curve is valid {reach}; outside (pale in the plots), it is extrapolated. {words}."
     if not curve.claims:
         note += " The method gives no interval."
     titles = [plain_text(cell) for cell in head]

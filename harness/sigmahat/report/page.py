@@ -91,10 +91,10 @@ def report(folder: Path) -> str:
         if (folder / name).is_file():
             return _page(contents(folder))
     if (folder / "runs.sqlite").is_file():
-        raise ValueError(f"{folder}: a sweep that is not complete; run its command again first")
+        raise ValueError(f"{folder}: incomplete sweep; run the command of the sweep again")
     raise ValueError(
-        f"{folder}: no result of `sigmahat reproduce`, `estimate` or `sweep` "
-        f"(expected one of {', '.join(kinds)})"
+        f"{folder}: expected results of `sigmahat reproduce`, `estimate` or `sweep` "
+        f"(one of the files {', '.join(kinds)})"
     )
 
 

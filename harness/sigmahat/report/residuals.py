@@ -1,6 +1,6 @@
 """Shows where a model fails: the predicted and the measured torque, and the residual.
 
-The torque of every tick is predicted before the estimator learns from this tick. So the second
+The torque of every tick is predicted before the estimator uses this tick. So the second
 half of a log is a test set: no sample was known when its torque was predicted.
 """
 

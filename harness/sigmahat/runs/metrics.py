@@ -140,7 +140,7 @@ def _relative(
     scale = sigma if relative_to is None else relative_to
     true, estimated, scale = _equal_shapes(sigma, estimate, scale)
     if not np.all(scale):
-        raise ValueError("relative error: expected a true stiffness that is nowhere zero")
+        raise ValueError("expected true stiffness without zeros, for the relative error")
     return true / scale, estimated / scale
 
 
@@ -153,5 +153,5 @@ def _equal_shapes(*signals: ArrayLike) -> list[NDArray[np.float64]]:
             f"got {', '.join(map(str, shapes))}"
         )
     if not all(np.all(np.isfinite(array)) for array in arrays):
-        raise ValueError("expected finite stiffness, got values that are not")
+        raise ValueError("expected finite stiffness, got NaN or infinite values")
     return arrays

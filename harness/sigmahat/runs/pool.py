@@ -33,7 +33,7 @@ def spread(
     jobs       partial objects or functions that other processes can import
     processes  largest number of processes, by default one per processor
 
-    Raises what a job raises, and WorkersLostError if a process was ended from outside. Closing
+    Raises what a job raises, and WorkersLostError if another program ended a process. Closing
     the generator cancels the jobs that have not begun.
     """
     workers = max(min(len(jobs), processes or os.cpu_count() or 1), 1)
@@ -45,7 +45,7 @@ def spread(
         for future in as_completed(places):
             yield places[future], future.result()
     except BrokenProcessPool as error:
-        raise WorkersLostError("a process was ended from outside") from error
+        raise WorkersLostError("another program ended a worker process") from error
     finally:
         executor.shutdown(cancel_futures=True)
 
@@ -55,7 +55,7 @@ def _interrupts_for_the_parent_alone() -> Iterator[None]:
     """Processes that start inside the block ignore Ctrl-C, which a terminal sends to them too.
 
     They inherit the blocked signal. In this process the signal waits until the end of the block,
-    also if another thread receives it, so that no process is left half started.
+    also if another thread receives it. So no process stays half started.
     """
     if not hasattr(signal, "pthread_sigmask"):
         yield

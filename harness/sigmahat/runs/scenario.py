@@ -133,7 +133,7 @@ def to_record(comparisons: Iterable[Comparison]) -> dict[str, set[str]]:
             source, variable = source_and_variable(signal)
             if source == NOMINAL:
                 needed[PLANT].update(MOTION)
-                needed.setdefault(MODEL, set())  # its parameters are the nominal data
+                needed.setdefault(MODEL, set())  # parameters of MODEL are the nominal data
             else:
                 needed[source].add(variable)
     return needed

@@ -35,9 +35,9 @@ def spread_on_cluster(
             yield places[future.key], future.result()
             future.release()
     except (distributed.CancelledError, CommClosedError) as error:
-        raise WorkersLostError(f"lost the connection to the scheduler at {scheduler}") from error
+        raise WorkersLostError(f"lost connection to the Dask scheduler at {scheduler}") from error
     except KilledWorker as error:
-        raise WorkersLostError("several workers died in the same run") from error
+        raise WorkersLostError("the same run ended several workers") from error
     except ImportError as error:
         raise WorkerError(f"a worker cannot import sigmahat: {error}; install it there") from error
     finally:

@@ -75,9 +75,8 @@ def sweep(
     progress   called with the number of runs done since the last call, first with the runs of
                earlier calls
 
-    Raises ValueError for a plan that does not fit its scenarios and if every run failed, FmuError
-    if an FMU refuses a listed value, WorkerError for workers that are missing or lost, OSError for
-    files that cannot be written.
+    Raises ValueError if the plan does not fit its scenarios or every run failed. Raises FmuError if
+    an FMU refuses a listed value, WorkerError without workers, OSError if a file cannot be written.
     """
     check(plan)
     with created_folder(out):
@@ -89,7 +88,7 @@ def sweep(
             raise OSError(errno.EIO, reason, str(out / NAME)) from error
         failures = [each.failure for each in outcomes if each.failure]
         if len(failures) == plan.count:
-            raise ValueError(f"every run failed, the first with: {failures[0]}")
+            raise ValueError(f"every run failed; message of the first: {failures[0]}")
         table = of_outcomes(plan, outcomes)
         from sigmahat.plotting.figure import save, stacked
         from sigmahat.sweep.panels import against_parameters, distributions
@@ -120,5 +119,5 @@ def all_outcomes(
                     records.add(missing[place], outcome)
                 progress(1)
     except WorkersLostError as error:
-        raise WorkersLostError(f"{error}; run the command again for what is left") from error
+        raise WorkersLostError(f"{error}; run the command again for the missing runs") from error
     return [each for each in outcomes if each is not None]

@@ -193,7 +193,7 @@ def read_plan(
             raise ValueError(f"{name}: {error}") from error
     plan = Plan(tuple(scenarios), seeds, tuple(modalities), parameters)
     if plan.count > _MOST:
-        raise ValueError(f"expected at most {_MOST} runs, got more")
+        raise ValueError(f"expected at most {_MOST} runs, got {plan.count}")
     for names in (plan.scenarios, plan.modalities):
         if len(set(names)) < len(names):
             raise ValueError(f"{', '.join(names)}: expected each name once")

@@ -50,7 +50,7 @@ def reduced(name: str, modalities: tuple[str, ...]) -> Scenario:
     chosen = modalities or tuple(compared)
     comparisons = [c for c in base.comparisons if set(to_record([c])) <= {PLANT, *chosen}]
     if not comparisons:
-        raise ValueError(f"{base.name} compares nothing with {', '.join(chosen)} alone")
+        raise ValueError(f"{base.name} needs more modalities than {', '.join(chosen)}")
     signals = to_record(comparisons)
     return replace(
         base,
@@ -78,7 +78,7 @@ def parameters_by_owner(
         if owner != ALL and owner not in own:
             raise ValueError(unknown("owner of a parameter", owner, [ALL, *own]))
         if (owner, name) == (PLANT, SEED):
-            raise ValueError(f"{full}: the seeds are those of --seeds")
+            raise ValueError(f"{full}: set the seeds with --seeds instead")
         for each in chosen.estimators if owner == ALL else (owner,):
             own[each][name] = parameters[full]
     return own
@@ -108,7 +108,7 @@ def models(scenario: Scenario) -> dict[str, Plant | EstimatorFmu]:
 
 
 def identity(run: Run) -> str:
-    """A text that differs between runs with different results; it does not have the number."""
+    """A text that differs between runs with different results; the run number has no effect."""
     fmus = _fmu_digest(run.scenario)
     every = [fmus, run.scenario, run.modalities, run.seed, run.parameters]
     return json.dumps(every, sort_keys=True)
@@ -124,10 +124,10 @@ def _fmu_digest(name: str) -> str:
 
 
 def execute(run: Run, known_as: str) -> Outcome:
-    """Does a run that has this identity. Raises WorkerError if the FMUs here are others."""
+    """Does a run that has this identity. Raises WorkerError if the FMUs here are different."""
     if identity(run) != known_as:
         raise WorkerError(
-            "a worker has other FMUs than this machine; install the same sigmahat on both"
+            "the FMUs of a worker differ from those here; install the same sigmahat on both"
         )
     try:
         indices = measured(prepare(run), run.seed, indices_by_comparison)

@@ -24,7 +24,7 @@ _ROWS = 30  # rows of a printed summary; summary.csv has all rows
 
 Mean = tuple[dict[str, Any], dict[Index, tuple[float, float]]]
 """A scenario with listed values and a comparison, by title, with the numbers of runs and of failed
-runs; and for each index its mean and half width of its 95 % interval, over runs that did not fail.
+runs. For each index: mean and half width of the 95 % interval, over runs that did not fail.
 """
 
 
@@ -94,7 +94,7 @@ def summary(sweep: SweepTable) -> str:
         lines.append(f"... {len(rows) - _ROWS} more rows in summary.csv")
     failures = [each for each in sweep.values(FAILURE) if each]
     if failures:
-        lines.append(f"\nfailed, the first with: {failures[0]}")
+        lines.append(f"\nfailed; message of the first: {failures[0]}")
     return "\n".join(lines)
 
 

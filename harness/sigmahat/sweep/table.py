@@ -208,5 +208,5 @@ def read(path: Path) -> SweepTable:
     except (pa.ArrowInvalid, KeyError, TypeError, ValueError, OSError) as error:
         if not path.exists():
             raise
-        raise ValueError(f"{path}: not the table of a sweep; run the sweep again") from error
+        raise ValueError(f"{path}: expected the table of a sweep; run the sweep again") from error
     return SweepTable(table, columns)

@@ -1,1 +1,1 @@
-"""Checks whether another log of the same joint confirms what was learned from a first log."""
+"""Checks whether another log of the same joint confirms the estimate from a first log."""

@@ -69,7 +69,7 @@ def torque_errors(
 
     The log is replayed twice: the first replay finds friction and bias of this log, the second
     replay counts. If the motor is slower than regression.slow, the sign of its friction is unknown,
-    and so is the torque of the spring: these instants do not count.
+    and so is the torque of the spring. These instants do not count.
 
     start  values of the FMU with which the curve does not change, sheet.as_fixed_curve
     """
@@ -119,8 +119,8 @@ class Agreement:
     overlap: float  #: Fraction of the instants at which both intervals overlap.
     z: float  #: Difference divided by its standard deviation, root mean square over the instants.
     agree: bool | None
-    """Whether z is at most 1.96; None if an interval contains 0 at half of the instants or more:
-    then agreement would mean nothing."""
+    """Whether z is at most 1.96; None if an interval contains 0 at half of the instants or more,
+    because agreement would then mean nothing."""
 
 
 def agreement(
@@ -229,8 +229,8 @@ def validate(log: Log, configuration: Configuration, start_from: str | Path) -> 
 
     start_from  a folder of results of `estimate`, or its state.json
 
-    Raises LogError for a log, a configuration and a start_from that do not fit, and for method
-    Paper2011, which gives no interval; FmuError if the FMU refuses.
+    Raises LogError if log, configuration and start_from do not fit together, or for Paper2011,
+    which gives no interval; FmuError if the FMU refuses.
     """
     learned = read_learned(Path(start_from))
     fmu = installed("StiffnessEstimator")
@@ -245,7 +245,7 @@ def validate(log: Log, configuration: Configuration, start_from: str | Path) -> 
         samples = job.samples
         complete = samples.values[np.isfinite(samples.values).all(axis=1)]
         if not len(complete):
-            raise LogError(f"{log.path}: no instant at which every port has a value")
+            raise LogError(f"{log.path}: expected values of all ports at the same time, found none")
         points = complete[:: -(-len(complete) // _INSTANTS)]
         start = sheet.start_values(slave, every)
         before = stiffness_at(slave, samples.names, points, job.t, samples.T)

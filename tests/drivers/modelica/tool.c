@@ -1,4 +1,4 @@
-/* What a Modelica tool has for external functions: messages, and an error that ends the model. */
+/* Functions that a Modelica tool provides for external functions: messages, and an error that ends the model. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>

@@ -16,8 +16,8 @@ static sh_real any_real(void)
     return value;
 }
 
-/* Parameters with every choice and order in its range, and every other number of any bits. Those that
- * pass sh_parameters_check are among them: check.c. The curve needs columns: PROOF_CURVE 1 stands for
+/* Parameters with every choice and order in its range, and every other number of any bits. The parameters that pass
+ * sh_parameters_check are among them: check.c. The curve needs columns: PROOF_CURVE 1 stands for
  * prior.tau_e > 0; 0 for prior.tau_e = 0, where prior.nominal is positive.
  */
 static void any_parameters(sh_parameters *p)

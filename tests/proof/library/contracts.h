@@ -1,12 +1,11 @@
-/* What the functions do that work on triangles: with them, a tick is analysed without the loops over
- * all entries, and for any numbers. Their bodies are analysed in information.c and ud_factor.c.
+/* Contracts of the functions that work on triangles. With them, a tick is analysed without the loops over all
+ * entries, and for any numbers. Their bodies are analysed in information.c and ud_factor.c.
  *
  * Each \from names all that the requirements read: Eva uses the results of a caller again where what it
  * reads is the same.
  *
- * The last two are about parameters that passed sh_parameters_check, which calls the same functions
- * with the same parameters: there are 1..SH_MAX_COLUMNS columns, and a curve rls.eta_0 if
- * prior.tau_e is 0.
+ * The last two are about parameters that passed sh_parameters_check, which calls the same functions with them. There
+ * are 1..SH_MAX_COLUMNS columns, and a curve rls.eta_0 if prior.tau_e is 0.
  */
 #ifndef CONTRACTS_H
 #define CONTRACTS_H

@@ -1,5 +1,5 @@
-/* The functions of information.c that contracts.h stands for, with their contracts, for a number of
- * columns SH_MAX_COLUMNS: every array is as short as it can be, and every loop is unrolled. Behind
+/* The functions of information.c that contracts.h replaces, with their contracts, for SH_MAX_COLUMNS columns. Every
+ * array is as short as possible, and every loop is unrolled. Behind
  * each array is a guard, which must be neither read nor written.
  */
 #include "anything.h"

@@ -1,5 +1,5 @@
-/* The functions of ud_factor.c that contracts.h stands for, with their contracts, for a number of
- * parameters SH_MAX_N SH_MAX_M: every array is as short as it can be, and every loop is unrolled.
+/* The functions of ud_factor.c that contracts.h replaces, with their contracts, for SH_MAX_N SH_MAX_M parameters.
+ * Every array is as short as possible, and every loop is unrolled.
  * Behind each array is a guard, which must be neither read nor written.
  */
 #include "anything.h"

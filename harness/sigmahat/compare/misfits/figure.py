@@ -15,11 +15,11 @@ from sigmahat.plotting.style import CYCLE
 _MARKERS = dict(zip((joint.name for joint in JOINTS), "o^s", strict=True))
 _COLORS = dict(zip(Group, CYCLE, strict=True))
 _GREY = "#888888"
-_LIMITS = 0.05, 100.0  # of both axes, wider if a row needs it [%]
+_LIMITS = 0.05, 100.0  # limits of both axes, wider if a row needs it [%]
 
 
 def draw(rows: Sequence[Row]) -> Figure:
-    """RMS error against RMS claim, with a point for each row, and the corner of dangerous rows."""
+    """RMS error against RMS of sigma_std, a point for each row, and the dangerous corner."""
     figure = Figure(figsize=(8.0, 6.5), layout="constrained")
     axes = figure.subplots()
     points = [(row.score.figures["claim"], row.score.figures["error"]) for row in rows]

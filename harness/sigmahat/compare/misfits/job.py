@@ -47,8 +47,8 @@ class Score:
 
     @property
     def figures(self) -> dict[str, float]:
-        """Root mean squares of error and claim; percentages of instants that have the truth within
-        1.96 sigma_std, are dangerous, confident, confident and wrong [%]; nan without instants.
+        """RMS of error and claim; percentages of instants with the truth within 1.96 sigma_std, and
+        of dangerous, confident, and confident and wrong instants [%]; nan without instants.
         """
         found = {name: total / (self.instants or math.nan) for name, total in vars(self).items()}
         del found["instants"]
@@ -133,8 +133,8 @@ def compare(
 
     processes, progress   as for sigmahat.runs.engine.run_all(); one run is one job
 
-    Raises ValueError for a start value that an FMU does not have, FmuError if an FMU refuses, and
-    WorkerError if a process was ended from outside.
+    Raises ValueError for an unknown start value, FmuError if an FMU refuses, and WorkerError if
+    another program ended a process.
     """
     rows = pairs(conditions, joints)
     jobs = [

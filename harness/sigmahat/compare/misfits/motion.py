@@ -15,10 +15,10 @@ Array = NDArray[np.float64]
 
 PLANT = "RealJointPlant"
 _RECORD = ("theta_measured", "q_measured", "tau_measured", "phi", "sigma")
-_LEAD = 0.0025 / (2 * math.pi)  # of the ball screw of the AwAS [m/rad]
+_LEAD = 0.0025 / (2 * math.pi)  # lead of the ball screw of the AwAS [m/rad]
 _RETRACTED = 0.1  # lever arm at theta_c = 0 [m]
-_COUNT = 2 * math.pi / 1024  # of the encoder of theta_c [rad]
-_LOW_PASS = 200.0  # of the velocities of a control [rad/s]
+_COUNT = 2 * math.pi / 1024  # count of the encoder of theta_c [rad]
+_LOW_PASS = 200.0  # low pass of the velocities of a control [rad/s]
 _LARGEST_JITTER = 0.49  # of a period
 _SHORTEST = 1.0 - 2 * _LARGEST_JITTER  # time between two samples, in periods
 _MARGIN = 0.1  # a measured torque may be late or early by at most this time [s]
@@ -50,7 +50,7 @@ def run(experiment: Experiment) -> Motion:
     acting = np.concatenate([[first], tau[:-1]]) if held else tau
     gain = experiment.plant.get("sensor.tau_gain", 1.0)
     columns["tau_measured"] += (_read(experiment, t, tau) - acting) / gain
-    theta_c = np.zeros(len(t))  # of the secondary motor of the AwAS, by its encoder
+    theta_c = np.zeros(len(t))  # angle of the secondary motor by its encoder
     if "r" in inputs:
         theta_c = _COUNT * np.floor((_RETRACTED - inputs["r"]) / _LEAD / _COUNT + 0.5)
     return Motion(

@@ -38,9 +38,9 @@ def read_bag(path: Path) -> LogInMemory:
                     column.extend([np.nan] * (row - len(column)))  # messages without this number
                     column.append(number)
     except (AnyReaderError, OSError, ValueError, KeyError, AssertionError) as error:
-        raise LogError(f"{path}: not a whole ROS 2 bag ({error}); copy it again") from error
+        raise LogError(f"{path}: incomplete ROS 2 bag ({error}); copy it again") from error
     if not values:
-        raise LogError(f"{path}: no message with numbers in it")
+        raise LogError(f"{path}: expected messages with numbers, found none")
     arrays = {}
     for topic, times in stamps.items():
         arrays[f"{topic}.time"] = (np.array(times, dtype=np.int64) - start) / 1e9

@@ -1,4 +1,4 @@
-"""Opens a log. Its format is found from the contents of the file, not from its name."""
+"""Opens a log. The format is found from the contents of the file, not from its name."""
 
 from pathlib import Path
 
@@ -31,7 +31,7 @@ def open_log(path: str | Path) -> Log:
     path = Path(path)
     if path.is_dir():
         if not (path / "metadata.yaml").is_file():
-            raise LogError(f"{path}: a folder without metadata.yaml is no ROS 2 bag; name a file")
+            raise LogError(f"{path}: expected a file or a ROS 2 bag, got another folder")
         return read_bag(path)
     if path.exists() and not path.is_file():  # reading a pipe would wait
         raise LogError(f"{path}: expected a file, got a pipe or a device; name a log")
@@ -39,12 +39,12 @@ def open_log(path: str | Path) -> Log:
         with path.open("rb") as file:
             head = file.read(_HEAD)
     except OSError as error:
-        raise LogError(f"{path}: {error.strerror}; name a log that can be read") from error
+        raise LogError(f"{path}: {error.strerror}; name a readable log") from error
     if not head:
         raise LogError(f"{path}: the file is empty; record it again")
     log = _reader(path, head)
     if not log.columns or max(log.columns.values()) == 0:
-        raise LogError(f"{path}: no rows in it; record it again")
+        raise LogError(f"{path}: the file has no rows; record it again")
     check_columns(path, len(log.columns))
     return log
 

@@ -3,8 +3,8 @@
 A vector is a column. A matrix is as many columns as its shorter side is long: "x[0]", "x[1]". In a
 structure or group, the path is part of the name: "joint.theta".
 
-The elements of a MAT file of version 5 to 7 are checked before scipy reads the file. scipy unpacks
-compressed variables of any size, and uses the kind of an element as an index. After a head
+The elements of a MAT file of version 5 to 7 are checked before scipy reads the file. The reason is
+that scipy unpacks variables of any size, and uses the kind of an element as an index. After a head
 of 128 bytes, each variable has a tag of two integers, kind and number of bytes, and then its bytes.
 A variable is a sequence of such elements again.
 """
@@ -27,7 +27,7 @@ _KINDS = {*range(1, 8), 9, 12, 13, _MATRIX, 16, 17, 18}  # numbers, matrices, te
 _HEAD = 128  # bytes
 _PIECE = 1 << 16  # bytes of the file that are unpacked at a time
 _MOST = 300_000_000  # bytes
-_MOST_OF_PARTS = 80_000_000  # of structures and cells: 8 bytes can become an object of 100 bytes
+_MOST_OF_PARTS = 80_000_000  # limit for structures and cells: 8 bytes can need 100
 _MOST_ELEMENTS = 1_000_000
 _NUMBERS = {"double", "single", "logical"} | {
     f"{u}int{n}" for u in ("", "u") for n in (8, 16, 32, 64)
@@ -56,19 +56,18 @@ def check_packed(path: Path) -> None:
                 unpacked += len(variable)
             if unpacked > most:
                 raise LogError(
-                    f"{path}: more than {most / 1e6:.0f} MB in a file of {size / 1e6:.3g} MB; "
-                    "save it without compression (-v6), or in parts"
+                    f"{path}: expected at most {most / 1e6:.0f} MB of data in {size / 1e6:.3g} MB, "
+                    "got more; save it without compression (-v6), or in parts"
                 )
             for found in _kinds(variable, tag):
                 elements += 1
                 if found not in _KINDS:
                     raise LogError(
-                        f"{path}: damaged MAT file (no element is of the kind {found}); "
-                        "save it again"
+                        f"{path}: damaged MAT file (element of unknown type {found}); save it again"
                     )
                 if elements > _MOST_ELEMENTS:
                     raise LogError(
-                        f"{path}: more than {_MOST_ELEMENTS} cells and fields; "
+                        f"{path}: expected at most {_MOST_ELEMENTS} cells and fields, got more; "
                         "save the columns as vectors"
                     )
 
@@ -107,7 +106,7 @@ def _is_plain(path: Path) -> bool:
         return False
 
 
-_MOST_COLUMNS = 256  # of one matrix; a larger matrix is an image, not a log
+_MOST_COLUMNS = 256  # limit of one matrix; a larger matrix is an image, not a log
 _DEEPEST = 32  # groups of HDF5 in groups
 
 Named = Iterator[tuple[str, NDArray[np.generic]]]
@@ -143,7 +142,7 @@ def read_hdf5(path: Path) -> LogInMemory:
 
     def walk(group: h5py.Group, above: str, depth: int = 0) -> Named:
         if depth > _DEEPEST:
-            raise LogError(f"{path}: groups in more than {_DEEPEST} groups, or in a circle")
+            raise LogError(f"{path}: expected at most {_DEEPEST} levels of groups, got more")
         for name in group:
             if name.startswith("#"):  # the contents of cells, in files of MATLAB
                 continue
@@ -171,7 +170,7 @@ def read_hdf5(path: Path) -> LogInMemory:
     except LogError:
         raise
     except (OSError, RuntimeError, KeyError, ValueError, TypeError) as error:
-        raise LogError(f"{path}: not a whole HDF5 file ({error}); copy it again") from error
+        raise LogError(f"{path}: incomplete HDF5 file ({error}); copy it again") from error
 
 
 def _elsewhere(path: Path, name: str, file: str) -> LogError:
@@ -205,5 +204,5 @@ def _log(path: Path, columns: Named) -> LogInMemory:
         check_columns(path, len(arrays))
         check_bytes(path, size)
     if not arrays:
-        raise LogError(f"{path}: no vector or matrix of numbers in it")
+        raise LogError(f"{path}: expected a vector or matrix of numbers, found none")
     return LogInMemory(path, arrays)

@@ -32,7 +32,7 @@ _BLOCK = 1 << 20  # bytes of a CSV file that are parsed at a time
 _ALWAYS_READ = 100_000_000  # bytes without compression that every file may have
 _LINES = 20  # lines that are checked before the text is parsed
 _BUFFER = 1 << 16  # bytes of a column that are read from a file at a time; else a whole row group
-_ROWS = 1 << 16  # of a column that are read at a time
+_ROWS = 1 << 16  # rows of a column that are read at a time
 _FEW = 100  # rows with text that are checked at a time
 
 
@@ -46,7 +46,7 @@ class ParquetLog(Log):
             schema, metadata = self._file.schema_arrow, self._file.metadata
             flat = [field.name for field in schema if _is_flat(field.type)]
         except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
-            raise LogError(f"{path}: not a whole Parquet file ({error}); copy it again") from error
+            raise LogError(f"{path}: incomplete Parquet file ({error}); copy it again") from error
         check_columns(path, len(flat))
         check_numbers(path, metadata.num_rows)
         self._texts = {field.name for field in schema if _is_text(field.type)}
@@ -106,8 +106,8 @@ class ParquetLog(Log):
                 longest = pa.compute.max(pa.compute.binary_length(texts)).as_py() or 0
                 if longest * len(batch) > MOST_TEXT:
                     raise LogError(
-                        f"{self.path}: column {field.name!r} holds texts of {longest} characters; "
-                        "save the log without it"
+                        f"{self.path}: column {field.name!r} has texts of {longest} characters; "
+                        "save the log without this column"
                     )
                 batch = batch.set_column(i, field.name, batch.column(i).cast(texts.type))
         return batch
@@ -243,8 +243,7 @@ def _first_lines(path: Path) -> tuple[list[str], str]:
             if all(c.isprintable() or c in "\t\r\n\ufeff" for line in lines for c in line):
                 return lines, encoding
     raise LogError(
-        f"{path}: neither text nor a known binary format; expected CSV, Parquet, MAT, "
-        "HDF5, MCAP or a ROS 2 bag"
+        f"{path}: unknown binary format; expected CSV, Parquet, MAT, HDF5, MCAP or a ROS 2 bag"
     )
 
 
@@ -253,23 +252,23 @@ def dialect(path: Path) -> Dialect:
     lines, encoding = _first_lines(path)
     for i, line in enumerate(lines, 1):
         if len(line) >= _BLOCK:
-            raise LogError(f"{path}: line {i} is longer than {_BLOCK} characters")
+            raise LogError(f"{path}: expected lines of at most {_BLOCK} characters; see line {i}")
     head, first, *rows = (line.strip("\r\n").removeprefix("\ufeff") for line in lines)
     delimiter = max(",;\t", key=head.count)
     names = [cell.strip().strip('"') for cell in head.split(delimiter)]
     if delimiter not in head:
         raise LogError(
-            f"{path}: line 1 is {head[:40]!r}, expected the names of several columns "
-            "between commas, semicolons or tabs"
+            f"{path}: line 1 is {head[:40]!r}, expected names of columns that commas, semicolons "
+            "or tabs separate"
         )
     if all(is_number(name) for name in names):
-        raise LogError(f"{path}: line 1 holds numbers, expected the names of the columns")
+        raise LogError(f"{path}: line 1 has numbers, expected the names of the columns")
     repeated, count = Counter(names).most_common(1)[0]
     if count > 1:
         raise LogError(f"{path}: line 1 names column {repeated!r} twice")
     check_columns(path, len(names))
     if not first:
-        raise LogError(f"{path}: no rows below the names of the columns; record it again")
+        raise LogError(f"{path}: expected rows below the column names, found none; record it again")
     units = [cell.strip().strip('"') for cell in first.split(delimiter)]
     has_units = len(units) == len(names) and rows[0] != "" and not any(map(_may_be_value, units))
     if has_units:
