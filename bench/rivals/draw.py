@@ -258,22 +258,17 @@ def _gains(motor: Motor, load: float, bandwidth: float) -> tuple[float, float]:
     return kd * omega / 1.4, kd
 
 
-def _linear(motor: Motor, load: float, stiffness: float, s: Complex) -> tuple[Complex, Complex]:
-    """Motor position and deformation by torque of a linear joint at s = 2 pi j f."""
+def _torque_drive(rng: Rng, motor: Motor, load: float, stiffness: float) -> tuple[Drive, float]:
+    """A multisine of torque, and the deformation of a linear joint under it [rad]."""
+    own_frequency = math.sqrt(stiffness / load) / 2 / math.pi
+    sines = _multisine(rng, max(_even(rng, HIGHEST) * own_frequency, 3 * LOWEST))
+    s = sines.s  # 2 pi j f
     c = stiffness * (1 + 1e-3 * s)
     phi_by_theta = -load * s**2 / (load * s**2 + c)
     own = motor.inertia * s**2 + motor.gear**2 * motor.D * s
-    theta = motor.gear / (own - c * phi_by_theta)
-    return theta, phi_by_theta * theta
-
-
-def _torque_drive(rng: Rng, motor: Motor, load: float, stiffness: float) -> tuple[Drive, float]:
-    """A multisine of torque, and the deformation of a linear joint under it [rad]."""
-    own = math.sqrt(stiffness / load) / 2 / math.pi
-    sines = _multisine(rng, max(_even(rng, HIGHEST) * own, 3 * LOWEST))
-    theta_by_torque, phi_by_torque = _linear(motor, load, stiffness, sines.s)
-    speed = motor.gear * _peak(sines.harmonics(sines.s * theta_by_torque))
-    phi = _peak(sines.harmonics(phi_by_torque))
+    theta_by_torque = motor.gear / (own - c * phi_by_theta)
+    speed = motor.gear * _peak(sines.harmonics(s * theta_by_torque))
+    phi = _peak(sines.harmonics(phi_by_theta * theta_by_torque))
     most = min(SPRING_STANDS * motor.gear * motor.peak / stiffness, LARGEST_PHI)
     effort = _even(rng, EFFORT) * motor.peak / _peak(sines.values())
     scale = min(effort, LARGEST_SPEED / speed, most / phi)

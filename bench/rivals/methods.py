@@ -18,22 +18,14 @@ from sigmahat.fmi.instance import Value
 CONFIDENT = 0.1
 """Least squares is confident while its standard deviation is below this share of a positive
 stiffness, as FilteredRegression is at most."""
-P_0 = 1e20
-"""Initial covariance of Paper2011, as in the paper."""
-SAMPLE = 1e7
-"""Weight of a sample at the range of the deformation, relative to the start."""
-ORDER = 4
-"""Of the Butterworth filter."""
-DYNAMICS = 0.99
-"""Share of the power of the motor velocity below the frequency of the dynamics."""
-EDGE = 5
-"""Rows that are dropped at both ends, where filters without lag have no past or no future."""
-INERTIA, VISCOUS, COULOMB, OFFSET, SPRING = 0, 1, 2, 3, 4
-"""Columns of least squares; those of the spring are the last ones."""
-
-
-N = 2
-"""Number of the powers of the deformation."""
+P_0 = 1e20  # initial covariance of Paper2011, as in the paper
+SAMPLE = 1e7  # weight of a sample at the range of the deformation, relative to the start
+ORDER = 4  # order of the Butterworth filter
+DYNAMICS = 0.99  # share of the power of the motor velocity below the frequency of the dynamics
+EDGE = 5  # rows that are dropped at both ends, where filters without lag have no past or no future
+KNOWN = 2  # first columns of least squares, inertia and viscous friction, which a data sheet has
+SPRING = 4  # its first column of the spring, after Coulomb friction and offset
+N = 2  # number of the powers of the deformation
 
 
 def _m(log: JointLog) -> int:
@@ -170,12 +162,8 @@ def _solve(X: Array, y: Array, known: Mapping[str, float]) -> tuple[Array, Array
     scale = np.sqrt(np.mean(X**2, axis=0))
     X = X / scale
     mean, information = np.zeros(len(scale)), np.zeros(len(scale))  # of the data sheet
-    for column, value, relative in (
-        (INERTIA, known["motor.B"], STD_B),
-        (VISCOUS, known["motor.D_theta"], STD_D),
-    ):
-        mean[column] = value * scale[column]
-        information[column] = (relative * value * scale[column]) ** -2
+    mean[:KNOWN] = np.array([known["motor.B"], known["motor.D_theta"]]) * scale[:KNOWN]
+    information[:KNOWN] = (np.array([STD_B, STD_D]) * mean[:KNOWN]) ** -2
     beta = np.linalg.lstsq(X, y)[0]
     for _ in range(2):  # the first time the residual is that without the rows of the data sheet
         residual = y - X @ beta

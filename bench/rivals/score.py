@@ -8,14 +8,10 @@ import numpy as np
 
 from rivals.records import Array, Estimate, JointLog
 
-SETTLED = 2.0
-"""An estimate is judged from this time on [s]."""
-INTERVAL = 0.95
-"""Probability of the intervals."""
-QUANTILE = 1.96
-"""The interval is the estimate and this many standard deviations to both sides."""
-WRONG = 0.2
-"""Relative error above which a confident estimate is wrong."""
+SETTLED = 2.0  # an estimate is judged from this time on [s]
+INTERVAL = 0.95  # probability of the intervals
+QUANTILE = 1.96  # the interval is the estimate and this many standard deviations to both sides
+WRONG = 0.2  # relative error above which a confident estimate is wrong
 SCORES = ("error", "width", "coverage", "interval_score", "confident", "wrong")
 RESULT = ("kind", "seed", "method", "seconds", "remark", *SCORES)
 """Names in the result of a method on a log."""
