@@ -109,80 +109,61 @@ def _plant(**start: float) -> Change:
     return lambda experiment: experiment.with_plant(values)
 
 
-def _share_of_torque(name: str, share: float, **others: float) -> Change:
-    """A start value that is a fraction of the peak of the torque command."""
-
-    def change(experiment: Experiment) -> Experiment:
-        values = {name: share * experiment.joint.torque}
-        return _plant(**others)(experiment.with_plant(values))
-
-    return change
+def _share_of_torque(
+    name: str, share: float, experiment: Experiment, **others: float
+) -> Experiment:
+    """A start value that is a fraction of the peak of the torque command; others as in _plant()."""
+    return _plant(**others)(experiment.with_plant({name: share * experiment.joint.torque}))
 
 
 def _run(**changed: float | Drive | Mapping[str, float]) -> Change:
     return lambda experiment: replace(experiment, **changed)  # type: ignore[arg-type]
 
 
-def _dahl(share: float) -> Change:
+def _dahl(share: float, experiment: Experiment) -> Experiment:
     """Hysteresis of a fraction of the peak torque, with 3 % of the peak deformation."""
-
-    def change(experiment: Experiment) -> Experiment:
-        peak = peak_deformation(experiment)
-        torque = share * experiment.stiffness * peak
-        return experiment.with_plant({"spring.dahl": torque, "spring.dahl_phi": 0.03 * peak})
-
-    return change
+    peak = peak_deformation(experiment)
+    torque = share * experiment.stiffness * peak
+    return experiment.with_plant({"spring.dahl": torque, "spring.dahl_phi": 0.03 * peak})
 
 
-def _hardening(n: int) -> Change:
+def _hardening(n: int, experiment: Experiment) -> Experiment:
     """A spring that is 30 % stiffer at the usual peak of the deformation."""
-
-    def change(experiment: Experiment) -> Experiment:
-        k_3 = 0.3 * experiment.stiffness / (3 * experiment.joint.deformation**2)
-        return experiment.with_plant({"spring.k_3": k_3}).with_estimator({"rls.n": n})
-
-    return change
+    k_3 = 0.3 * experiment.stiffness / (3 * experiment.joint.deformation**2)
+    return experiment.with_plant({"spring.k_3": k_3}).with_estimator({"rls.n": n})
 
 
-def _control(link_velocity: bool, gravity: bool = False) -> Change:
+def _control(
+    experiment: Experiment, link_velocity: bool = False, gravity: bool = False
+) -> Experiment:
     """PD control of the motor position, with smaller amplitudes at higher frequencies."""
-
-    def change(experiment: Experiment) -> Experiment:
-        joint, share = experiment.joint, 0.6 if gravity else 1.0
-        terms = [
-            replace(s, amplitude=3 * share * s.amplitude / joint.torque / (1 + omega))
-            for s in experiment.torque.terms
-            for omega in [2 * math.pi * s.frequency]
-        ]
-        # The reference begins at the mean position.
-        begin = sum(s.amplitude * math.sin(s.phase) for s in terms)
-        middle = math.pi / 2 if gravity else 0.0
-        control = Control(
-            Sines(middle - begin, terms), joint.kp, joint.kd, joint.kd / 2 if link_velocity else 0.0
-        )
-        heavy = experiment.with_plant({"link.mgl": 12.0}) if gravity else experiment
-        return replace(heavy, control=control, drive=Drive.HELD_MEAN)
-
-    return change
+    joint, share = experiment.joint, 0.6 if gravity else 1.0
+    terms = [
+        replace(s, amplitude=3 * share * s.amplitude / joint.torque / (1 + omega))
+        for s in experiment.torque.terms
+        for omega in [2 * math.pi * s.frequency]
+    ]
+    # The reference begins at the mean position.
+    begin = sum(s.amplitude * math.sin(s.phase) for s in terms)
+    reference = Sines((math.pi / 2 if gravity else 0.0) - begin, terms)
+    kq = joint.kd / 2 if link_velocity else 0.0
+    heavy = experiment.with_plant({"link.mgl": 12.0}) if gravity else experiment
+    control = Control(reference, joint.kp, joint.kd, kq)
+    return replace(heavy, control=control, drive=Drive.HELD_MEAN)
 
 
 def _load(experiment: Experiment) -> Experiment:
     """A constant load, and the mean torque of the motor that carries it."""
     load = experiment.joint.load
     terms = [Sine(0.9 * s.amplitude, s.frequency, s.phase) for s in experiment.torque.terms]
-    return replace(
-        experiment, load=load, torque=Sines(-load / experiment.plant["motor.gamma"], terms)
-    )
+    torque = Sines(-load / experiment.plant["motor.gamma"], terms)
+    return replace(experiment, load=load, torque=torque)
 
 
-def _exact_inertia(change: Change, error: float = 0.0) -> Change:
+def _exact_inertia(change: Change, experiment: Experiment, error: float = 0.0) -> Experiment:
     """B is given as exact, right or with a relative error."""
-
-    def both(experiment: Experiment) -> Experiment:
-        changed = change(experiment).with_estimator({"prior.B": 0.0})
-        return replace(changed, errors={**changed.errors, "B": error})
-
-    return both
+    changed = change(experiment).with_estimator({"prior.B": 0.0})
+    return replace(changed, errors={**changed.errors, "B": error})
 
 
 _SEA = (SEA_1K, SEA_5K)
@@ -196,11 +177,11 @@ _MISFITS: Sequence[Condition] = (
     _clean("500 Hz", _run(T=2e-3)),
     _clean("5 kHz", _run(T=2e-4)),
     _clean("contact", lambda each: each.with_plant(each.joint.contact)),
-    _clean("PD on motor, mean of held torque", _control(False)),
-    _clean("PD on motor, feedback of q", _control(True)),
-    _clean("PD and gravity, one sign of phi", _control(False, True), _SEA),
+    _clean("PD on motor, mean of held torque", _control),
+    _clean("PD on motor, feedback of q", partial(_control, link_velocity=True)),
+    _clean("PD and gravity, one sign of phi", partial(_control, gravity=True), _SEA),
     _clean("constant load, one sign of phi", _load),
-    _class_1("torque bias 2 %", _share_of_torque("sensor.tau_bias", 0.02)),
+    _class_1("torque bias 2 %", partial(_share_of_torque, "sensor.tau_bias", 0.02)),
     _class_1("uneven Coulomb friction 20 %", _plant(motor__uneven=0.2)),
     _class_1("load friction 0.1", _plant(motor__load_friction=0.1)),
     _class_1("load friction 0.2", _plant(motor__load_friction=0.2)),
@@ -213,12 +194,12 @@ _MISFITS: Sequence[Condition] = (
     _class_1("damping k/1000 s", _plant(spring__damping=1 / 1000)),
     _class_1("jitter 5 %", _run(jitter=0.05)),
     _class_2("zero of q 2 mrad off", _plant(encoder__q_offset=2e-3)),
-    _class_2("hysteresis 2 %", _dahl(0.02)),
-    _class_2("hysteresis 5 %", _dahl(0.05)),
+    _class_2("hysteresis 2 %", partial(_dahl, 0.02)),
+    _class_2("hysteresis 5 %", partial(_dahl, 0.05)),
     _class_2("backlash 1 mrad", _plant(spring__gap=0.5e-3)),
     _class_2("n = 1, too small", lambda each: each.with_estimator({"rls.n": 1}), (AWAS,)),
     _class_2("m = 2, too small", lambda each: each.with_estimator({"rls.m": 2}), (AWAS,)),
-    _class_2("hardening spring, n = 1", _hardening(1), _SEA),
+    _class_2("hardening spring, n = 1", partial(_hardening, 1), _SEA),
     *(
         _class_2(
             f"eccentric encoder of theta, {1e3 * size:g} mrad",
@@ -230,7 +211,7 @@ _MISFITS: Sequence[Condition] = (
     *(
         _class_3(
             f"cogging {order} per turn, {100 * share:g} %",
-            _share_of_torque("motor.cogging", share, motor__cogging_order=order),
+            partial(_share_of_torque, "motor.cogging", share, motor__cogging_order=order),
         )
         for order in (6, 12)
         for share in (0.02, 0.05)
@@ -247,7 +228,7 @@ _MISFITS: Sequence[Condition] = (
     ),
     _gain(
         "gain 0.9, prior 0.1, B exact",
-        _exact_inertia(_plant(sensor__tau_gain=0.9)),
+        partial(_exact_inertia, _plant(sensor__tau_gain=0.9)),
         torque_gain=0.1,
     ),
     _none("viscous friction bends at 4 rad/s", _plant(motor__v_bend=4.0), _COARSE),
@@ -256,14 +237,14 @@ _MISFITS: Sequence[Condition] = (
     _none("held torque, mean of u", _run(drive=Drive.HELD_MEAN)),
     _none("kinematic error 0.3 mrad", _plant(gear__kinematic_error=0.3e-3)),
     _none("kinematic error 0.1 mrad", _plant(gear__kinematic_error=0.1e-3), _SEA),
-    _none("hysteresis 10 %", _dahl(0.1)),
+    _none("hysteresis 10 %", partial(_dahl, 0.1)),
     _none("damping k/100 s", _plant(spring__damping=1 / 100)),
     *(
         _none(f"encoders of {counts:.0f} counts", _plant(encoder__theta=counts, encoder__q=counts))
         for counts in (4096.0, 65536.0, 1048576.0)
     ),
     _none("q read 2 ms after theta", _plant(encoder__q_delay=2e-3)),
-    _none("hardening spring, n = 3", _hardening(3), _SEA),
+    _none("hardening spring, n = 3", partial(_hardening, 3), _SEA),
     _none("rest for 30 s, then motion for 10 s", _run(rest=30.0, duration=40.0)),
 )
 _CHANGES = {each.name: each.change for each in _MISFITS}
@@ -274,8 +255,8 @@ _WITH_EXACT_INERTIA = (
 
 CONDITIONS: Sequence[Condition] = (
     *_MISFITS,
-    *(_none(f"B exact: {n}", _exact_inertia(_CHANGES[n])) for n in _WITH_EXACT_INERTIA),
-    _none("B 5 % wrong, given as exact", _exact_inertia(_run(), 0.05)),
+    *(_none(f"B exact: {n}", partial(_exact_inertia, _CHANGES[n])) for n in _WITH_EXACT_INERTIA),
+    _none("B 5 % wrong, given as exact", partial(_exact_inertia, _run(), error=0.05)),
     _random("random, all misfits at once", all_misfits, torque_gain=0.02),
     _none("random, without misfits", other_joint),
 )
