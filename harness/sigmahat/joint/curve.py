@@ -42,11 +42,11 @@ class Branch:
 
     def torque_interval(self) -> tuple[Array, Array] | None:
         """Lower and upper end of the 95 % interval of the torque [N.m]."""
-        return _interval(self.tau_e, self.tau_e_std)
+        return interval(self.tau_e, self.tau_e_std)
 
     def stiffness_interval(self) -> tuple[Array, Array] | None:
         """Lower and upper end of the 95 % interval of the stiffness [N.m/rad]."""
-        return _interval(self.sigma, self.sigma_std)
+        return interval(self.sigma, self.sigma_std)
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,8 @@ class Curve:
         return any(branch.sigma_std is not None for branch in self.branches)
 
 
-def _interval(value: Array, std: Array | None) -> tuple[Array, Array] | None:
+def interval(value: Array, std: Array | None) -> tuple[Array, Array] | None:
+    """Lower and upper end of the 95 % interval; None without a standard deviation."""
     if std is None:
         return None
     return value - NORMAL_95 * std, value + NORMAL_95 * std

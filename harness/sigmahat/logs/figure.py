@@ -7,12 +7,13 @@ from matplotlib.figure import Figure
 
 from sigmahat.logs.curve import Answer, extremes
 from sigmahat.logs.job import DRAWN, Replay
-from sigmahat.logs.log import Array
 from sigmahat.logs.panels import Reduced, curve_panels, quantity_panels, stiffness_panels
-from sigmahat.logs.sampling import Samples, refused, stretches
+from sigmahat.logs.sampling import refused, stretches
 from sigmahat.plotting.figure import draw as draw_panel
 from sigmahat.plotting.figure import label_x
 from sigmahat.plotting.panels import Panel
+
+_MOST = 200  # stretches of ticks that the estimator skipped: only the longest are drawn
 
 
 def draw(replay: Replay, answer: Answer) -> Figure:
@@ -27,10 +28,13 @@ def draw(replay: Replay, answer: Answer) -> Figure:
         draw_panel(axes, panel, columns=2)
         label_x(axes, panel)
         axes.locator_params(axis="x", nbins=6)
-    skipped = _skipped(replay.samples)
+    samples = replay.samples
+    skipped = np.column_stack(stretches(refused(samples.values)))
+    longest = np.argsort(skipped[:, 1] - skipped[:, 0])[::-1][:_MOST]
+    skipped_times = samples.T * skipped[longest].astype(np.float64)
     every = below.subplots(len(panels), sharex=True, squeeze=False)[:, 0]
     for axes, panel in zip(every, panels, strict=True):
-        for number, (begin, end) in enumerate(skipped.tolist()):
+        for number, (begin, end) in enumerate(skipped_times.tolist()):
             legend = None if number else "skipped"
             axes.axvspan(begin, end, color="#cccccc", lw=0.5, label=legend)
         for number, change in enumerate(replay.changes.found):
@@ -57,10 +61,3 @@ def _over_time(replay: Replay) -> list[Panel]:
     reduced = Reduced(t, signals, statistics.bucket)
     stiffness = stiffness_panels(reduced, {"estimate": {"sigma": "sigma"}})
     return [*stiffness, *quantity_panels(reduced, "")]
-
-
-def _skipped(samples: Samples) -> Array:
-    """Begin and end of the longest stretches of ticks that the estimator skipped [s]."""
-    both = np.column_stack(stretches(refused(samples.values)))
-    longest = np.argsort(both[:, 1] - both[:, 0])[::-1][:200]
-    return samples.T * both[longest].astype(np.float64)

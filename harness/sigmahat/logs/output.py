@@ -54,7 +54,8 @@ class EstimateWriter(AbstractContextManager["EstimateWriter"]):
         self._tick_of_row = samples.tick_of_row
         self._T = samples.T
         names = [name for name, n in log.columns.items() if n == len(samples.tick_of_row)]
-        self._rows = _Rows(log.batches(names, _ROWS))
+        self._batches = log.batches(names, _ROWS)
+        self._left = pa.Table.from_batches([next(self._batches)])  # rows that are not written yet
         self._row = self._tick = 0
         self._writer: Any = None
         self._thread = ThreadPoolExecutor(1)  # writes a table while the next ticks are computed
@@ -66,7 +67,11 @@ class EstimateWriter(AbstractContextManager["EstimateWriter"]):
         # An int32 as in the array: for another type, the whole array would be converted.
         end = int(np.searchsorted(self._tick_of_row, np.int32(self._tick + ticks)))
         take = self._tick_of_row[self._row : end] - self._tick
-        table = self._rows.take(end - self._row)
+        count = end - self._row
+        while self._left.num_rows < count:
+            more = pa.Table.from_batches([next(self._batches)])
+            self._left = pa.concat_tables([self._left, more])
+        table, self._left = self._left.slice(0, count), self._left.slice(count)
         times = self._T * np.arange(self._tick, self._tick + ticks)
         for name, values in {_TIME: times, **outputs}.items():
             rows = values[take]
@@ -137,24 +142,6 @@ def _with_commas(table: pa.Table) -> pa.Table:
             text = pa.compute.replace_substring(table.column(i).cast(pa.string()), ".", ",")
             table = table.set_column(i, field.name, text)
     return table
-
-
-class _Rows:
-    """Takes as many rows as wanted from batches of any size."""
-
-    def __init__(self, batches: Iterator[pa.RecordBatch]) -> None:
-        self._batches = batches
-        self._left: list[pa.RecordBatch] = []
-
-    def take(self, rows: int) -> pa.Table:
-        have = sum(batch.num_rows for batch in self._left)
-        while have < rows or not self._left:
-            batch = next(self._batches)
-            self._left.append(batch)
-            have += batch.num_rows
-        table = pa.Table.from_batches(self._left)
-        self._left = table.slice(rows).to_batches() or [self._left[-1].slice(0, 0)]
-        return table.slice(0, rows)
 
 
 MCAP = "estimate.mcap"  # name of the file in the folder of results

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sigmahat.joint import curve as joint
-from sigmahat.joint.curve import NORMAL_95
 from sigmahat.logs.curve import MeasuredPoints, extremes
 from sigmahat.plotting.panels import COLORS, TRUE, Curve, Panel
 from sigmahat.plotting.style import QUANTITIES, around, limits, plain_axis, with_margin
@@ -54,7 +53,6 @@ def reduce(t: NDArray[Any], signals: Mapping[str, NDArray[Any]], budget: int = B
     return Reduced(times, reduced, bucket, (float(t[first]), float(t[last - 1])))
 
 
-Band = tuple[NDArray[Any], NDArray[Any]]
 _TIME = plain_axis("t")
 _WIDE = 3.5  # line width of the truth, which stays visible under an estimate
 _SIDES = ("", "_1", "_2")
@@ -103,7 +101,9 @@ def stiffness_panels(
         lines = []
         for label, color in zip(labels, COLORS, strict=False):
             values = reduced.signals[estimates[label][f"sigma{side}"]]
-            band = _band(values, reduced, side)
+            std = reduced.signals.get(f"sigma_std{side}")
+            has_interval = std is not None and np.nanmax(std) > 0
+            band = joint.interval(values, std) if has_interval else None
             lines.append(Curve(label, color, reduced.t, values, band=band))
         true = reduced.signals.get(f"plant.sigma{side}")
         truth = [] if true is None else [Curve("true", TRUE, reduced.t, true, width=_WIDE)]
@@ -128,14 +128,6 @@ def stiffness_panels(
                 y_log=True,
                 y_range=(1e-5, 2e2),
             )
-
-
-def _band(sigma: NDArray[Any], reduced: Reduced, side: str) -> Band | None:
-    """The 95 % interval over time; None if the method gives no interval."""
-    std = reduced.signals.get(f"sigma_std{side}")
-    if std is None or not np.nanmax(std) > 0:
-        return None
-    return sigma - NORMAL_95 * std, sigma + NORMAL_95 * std
 
 
 def _with_band(shown: tuple[float, float], lines: Sequence[Curve]) -> tuple[float, float]:
