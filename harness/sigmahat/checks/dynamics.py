@@ -25,14 +25,10 @@ def dynamics(here: Relation) -> Iterator[Finding]:
     seen, found = here.seen, here.fitted
     if found is None or not 0 < found.linear.half_width.get(LINEAR, math.inf) < math.inf:
         return  # the log determines no stiffness
-    gear = None if here.findings else _gear(seen, found)
-    if gear is not None:
-        yield gear
-        return  # the deformation is wrong, even its sign, so all further results are wrong
-    sign = _sign(seen, found)
-    if sign is not None:
-        yield sign
-        return  # with a wrong sign, further results mean nothing
+    wrong = (None if here.findings else _gear(seen, found)) or _sign(seen, found)
+    if wrong is not None:
+        yield wrong
+        return  # with a wrong deformation or a wrong sign, further results mean nothing
     zero = _zero(seen, found)
     if zero is not None:
         yield zero

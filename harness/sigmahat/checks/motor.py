@@ -174,9 +174,7 @@ def _chosen(seen: View, form: Form) -> tuple[Form, Equations]:
 
 def _equations(seen: View, form: Form) -> Equations:
     every = regression.equations(seen.pieces, seen.T, seen.gamma, form)
-    if not seen.has_sensor:
-        return every
-    return every.without(MOTOR)
+    return every.without(MOTOR) if seen.has_sensor else every
 
 
 def moved(signal: Array, ticks: float) -> Array:

@@ -86,12 +86,12 @@ def write(
     """
     out.mkdir(parents=True, exist_ok=True)
     root = render(template, version)
-    sources = list(sources)
+    sources = [file for file in sources if file.suffix == ".c"]  # only these are compiled
     listed = SubElement(root.findall("CoSimulation")[0], "SourceFiles")
-    for name in file_names(for_version(sources, 2)):
+    for name in (file.name for file in for_version(sources, 2)):
         SubElement(listed, "File", name=name)
     write_completed(root, struct, storage, out / "modelDescription.xml", out / "variables.h")
-    names = file_names(for_version(sources, 3))
+    names = [file.name for file in for_version(sources, 3)]
     (out / "fmi3").mkdir(exist_ok=True)
     _write_xml(for_fmi3(root), out / "fmi3/modelDescription.xml")
     _write_xml(build_description(template.stem, names), out / "fmi3/buildDescription.xml")
@@ -113,11 +113,6 @@ def _write_xml(root: Element, file: Path) -> None:
 def for_version(files: Iterable[Path], fmi: int) -> list[Path]:
     """The files of an FMU of FMI 2.0 or 3.0, without files in the folder of the other version."""
     return [file for file in files if file.parent.name != {2: "fmi3", 3: "fmi2"}[fmi]]
-
-
-def file_names(files: Iterable[Path]) -> list[str]:
-    """The names of the C files among some files: only C files are compiled."""
-    return [file.name for file in files if file.suffix == ".c"]
 
 
 def with_headers(files: Iterable[Path]) -> list[Path]:

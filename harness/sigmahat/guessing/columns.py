@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -280,19 +281,16 @@ def read_columns(log: Log) -> Columns:
         T = interval(t)
         clocks[name] = Clock(units[name], T, lost_rows(t, T))
     clocks[None] = Clock()
-    clock_of = {name: _clock_of(name, log, list(units)) for name in log.columns}
+    clock_of = {}  # from the same group or topic, else any clock of equal length
+    for name, samples in log.columns.items():
+        same = [each for each in units if log.columns[each] == samples]
+        clock_of[name] = max(same, key=partial(_common, name), default=None)
     signals = [name for name in log.columns if name not in units]
     moving = [name for name in signals if facts[name].varies]
     T = min((clocks[clock_of[name]].interval for name in moving), default=clocks[None].interval)
     windows = dict.fromkeys(signals, np.empty(0)) | _windows(moving, values, clock_of, times, T)
     found = [Column(n, meanings[n], facts[n], clock_of[n], windows[n]) for n in signals]
     return Columns(found, clocks, facts, T)
-
-
-def _clock_of(column: str, log: Log, clocks: Sequence[str]) -> str | None:
-    """The clock of a column: from the same group or topic, else any clock of equal length."""
-    same = [name for name in clocks if log.columns[name] == log.columns[column]]
-    return max(same, key=lambda name: _common(name, column), default=None)
 
 
 def _common(one: str, other: str) -> int:

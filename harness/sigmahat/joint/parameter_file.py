@@ -15,7 +15,7 @@ from sigmahat.fmi.instance import Fmu
 from sigmahat.joint.sheet import Sheet, origin
 
 _CURVE = "rls.eta_0["
-_TEMPLATES = Path(__file__).with_name("templates")
+_TEMPLATES = environment(Path(__file__).with_name("templates"))
 
 
 @dataclass(frozen=True)
@@ -72,23 +72,15 @@ def _ssv(sheet: Sheet, fmu: Fmu, starts: list[_Start], name: str) -> str:
             f"file name {name!r}: expected characters that XML allows, because the file contains "
             "its name; choose another name with --out"
         )
-    return (
-        environment(_TEMPLATES)
-        .get_template("parameters.ssv")
-        .render(
-            element=name,
-            comments=_head(sheet),
-            parameters=[
-                {
-                    "name": s.name,
-                    "type": s.variable.type,
-                    "value": s.item or s.text,
-                    "unit": s.variable.unit,
-                }
-                for s in listed
-            ],
-            units=[unit for unit in fmu.description.unitDefinitions if unit.name in units],
-        )
+    parameters = []
+    for s in listed:
+        about = {"type": s.variable.type, "unit": s.variable.unit}
+        parameters.append({"name": s.name, "value": s.item or s.text, **about})
+    return _TEMPLATES.get_template("parameters.ssv").render(
+        element=name,
+        comments=_head(sheet),
+        parameters=parameters,
+        units=[unit for unit in fmu.description.unitDefinitions if unit.name in units],
     )
 
 

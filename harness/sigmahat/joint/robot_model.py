@@ -130,26 +130,21 @@ def write_model(sheet: Sheet, kind: str, path: Path) -> None:
     name = one_line(path.name.partition(".")[0]).replace(" ", "_")
     parameters = _parameters(sheet)
     spring = _spring(sheet, reach, degree=3 if kind == "mjcf" else 1)
-    template = "sdf" if kind == "drake" else kind
-    model = (
-        environment(Path(__file__).parent / "templates")
-        .get_template(f"{template}.xml")
-        .render(
-            name=name,
-            parameters=parameters,
-            gear_ratio=sheet.parameters["gamma"].value,
-            rotor_inertia=max(sheet.parameters["B"].value, 0.0),
-            spring=spring,
-            rotor=_ROTOR,
-            inertia=max(parameters["motor.armature"].value, _ROTOR),
-            drake=kind == "drake",
-        )
+    templates = environment(Path(__file__).parent / "templates")
+    model = templates.get_template(f"{'sdf' if kind == 'drake' else kind}.xml").render(
+        name=name,
+        parameters=parameters,
+        gear_ratio=sheet.parameters["gamma"].value,
+        rotor_inertia=max(sheet.parameters["B"].value, 0.0),
+        spring=spring,
+        rotor=_ROTOR,
+        inertia=max(parameters["motor.armature"].value, _ROTOR),
+        drake=kind == "drake",
     )
     lines = [f"{name}_motor: the motor at its gear output; {name}_flexibility: the deformation."]
     for key, each in parameters.items():
-        claim = (
-            "95 % from {:.6g} to {:.6g}".format(*each.interval) if each.interval else "no interval"
-        )
+        ends = each.interval
+        claim = f"95 % from {ends[0]:.6g} to {ends[1]:.6g}" if ends else "no interval"
         lines.append(f"{name}_{key} = {each.value:.6g} {each.unit}, {claim} ({each.interval_from})")
     lines += [*_limits(sheet, spring, reach), _MISSING[kind], *origin(sheet)]
     comments = [f"<!-- {line} -->" for line in lines if line]

@@ -8,6 +8,7 @@ import math
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from zlib import crc32
@@ -48,25 +49,19 @@ def values(text: str) -> Values:
         return _range(text)
     if any(not part.strip() for part in text.split(",")) or "(" in text:
         raise ValueError(f"expected {_FORMS}, got {text!r}")
-    return _distinct([_literal(part) for part in text.split(",")])
-
-
-def _distinct(items: Sequence[Value]) -> tuple[Value, ...]:
+    items = tuple(_literal(part) for part in text.split(","))
     item, count = Counter(items).most_common(1)[0]
     if count > 1:
         raise ValueError(f"{item!r} is given twice")
-    return tuple(items)
+    return items
 
 
 def _drawn(text: str, kind: str, arguments: Sequence[str]) -> Drawn:
-    try:
+    with suppress(ValueError):
         first, second = map(_finite, arguments)
-    except ValueError:
-        first = second = math.nan
-    fits = {"uniform": first < second, "normal": second > 0.0}
-    if not fits.get(kind, False):
-        raise ValueError(f"expected {_FORMS}, got {text!r}")
-    return Drawn(kind, first, second)
+        if {"uniform": first < second, "normal": second > 0.0}.get(kind):
+            return Drawn(kind, first, second)
+    raise ValueError(f"expected {_FORMS}, got {text!r}")
 
 
 def _range(text: str) -> tuple[Value, ...]:
@@ -85,10 +80,8 @@ def _literal(text: str) -> Value:
     if text in ("true", "false"):
         return text == "true"
     for kind in (int, _finite):
-        try:
+        with suppress(ValueError):
             return kind(text)
-        except ValueError:
-            continue
     return text
 
 

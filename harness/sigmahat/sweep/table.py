@@ -102,16 +102,6 @@ class SweepTable:
         return SweepTable(self.table.filter(pa.array(rows, pa.bool_())), self.columns)
 
 
-def from_columns(columns: dict[Column, list[Any]]) -> SweepTable:
-    """A table of columns of one length, by the meaning of the columns."""
-    arrays = [_array(column, values) for column, values in columns.items()]
-    fields = [
-        pa.field(title(column), array.type, metadata=_meaning(column))
-        for column, array in zip(columns, arrays, strict=True)
-    ]
-    return SweepTable(pa.table(arrays, pa.schema(fields)), list(columns))
-
-
 _FAILED = Indices(*[math.nan] * len(INDICES))
 
 
@@ -160,7 +150,12 @@ def of_outcomes(plan: Plan, outcomes: Sequence[Outcome]) -> SweepTable:
             }
             for column, values in columns.items():
                 values.append(row[column])
-    return from_columns(columns)
+    arrays = [_array(column, values) for column, values in columns.items()]
+    fields = [
+        pa.field(title(column), array.type, metadata=_meaning(column))
+        for column, array in zip(columns, arrays, strict=True)
+    ]
+    return SweepTable(pa.table(arrays, pa.schema(fields)), list(columns))
 
 
 def _error(name: str, estimator: Mapping[str, Value], plant: Mapping[str, Value]) -> float:
