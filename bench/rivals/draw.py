@@ -334,8 +334,8 @@ def _tendons(rng: Rng, stiffness: float, load: float) -> Tendons:
     damping = _damping(rng, stiffness, load)
     plain = Tendons(lever, eyelet, _even(rng, SPREAD), 1, 0, 0, range_theta_c, damping)
     # The stiffness of a joint is linear in stiffness and tension of its tendons.
-    by_tension = replace(plain, stiffness=0, tension=1).joint_stiffness(0)
-    k = share * stiffness / plain.joint_stiffness(0)
+    by_tension = replace(plain, stiffness=0, tension=1).joint_stiffness()
+    k = share * stiffness / plain.joint_stiffness()
     return replace(
         plain,
         stiffness=k,

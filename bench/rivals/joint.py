@@ -101,14 +101,13 @@ class Tendons:
         a, r = self.lever, self.eyelet
         return math.sqrt(a * a + r * r - 2 * a * r * math.cos(alpha))
 
-    def joint_stiffness(self, theta_c: float) -> float:
-        """Slope of the torque at phi = 0 [N.m/rad]."""
+    def joint_stiffness(self) -> float:
+        """Slope of the torque at phi = 0, x = 0 [N.m/rad]."""
         a, r, alpha = self.lever, self.eyelet, self.spread
         d = self.length(alpha)
         slope = a * r * math.sin(alpha) / d
         bend = (a * r * math.cos(alpha) - slope**2) / d
-        tension = self.tension + self.stiffness * self.travel * theta_c
-        return 2 * (self.stiffness * slope**2 + tension * bend)
+        return 2 * (self.stiffness * slope**2 + self.tension * bend)
 
 
 @dataclass(frozen=True)

@@ -34,8 +34,8 @@ def coherent_range(piece: Signals, gamma: float, noise: TorqueNoise) -> float:
     T, highest = noise.T, noise.bandwidth
     if highest <= _LOWEST or len(piece.theta) * T < 2 * _SEGMENT:
         return math.inf
-    low = Form(min(_FIRST, highest), min(_FIRST, highest))
-    system = regression.equations([piece], T, gamma, low)
+    slow = Form(min(_FIRST, highest), min(_FIRST, highest))
+    system = regression.equations([piece], T, gamma, slow)
     found = regression.fit(system)
     p, motor = np.array(list(found.value.values())), slice(len(MOTOR))
     rest = slice(len(MOTOR), None)
@@ -46,12 +46,7 @@ def coherent_range(piece: Signals, gamma: float, noise: TorqueNoise) -> float:
     torque, spring = np.concatenate(torques), np.concatenate(springs)
     if not np.all(np.isfinite(torque) & np.isfinite(spring)):
         return math.inf
-    return _incoherent_above(torque, spring, noise)
-
-
-def _incoherent_above(torque: Array, spring: Array, noise: TorqueNoise) -> float:
-    highest = noise.bandwidth
-    frequency, shared, power = spectra(torque, spring, 2 * noise.T)  # every second sample
+    frequency, shared, power = spectra(torque, spring, 2 * T)  # every second sample
     bands = math.ceil(2 * math.log2(highest / _LOWEST))
     limit = math.inf
     edges = np.geomspace(_LOWEST, highest, bands + 1)

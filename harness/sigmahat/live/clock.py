@@ -41,7 +41,10 @@ class Clock:
         t = float(stamp - self.shift) * self.seconds
         if is_first or self._floor < t <= self.now + LONGEST_PAUSE:
             if not is_first:
-                self._count(t - self.now)
+                step = t - self.now
+                self.usual = self.usual or max(step, _SHORTEST)
+                self.lost += max(round(step / self.usual) - 1, 0)
+                self.usual += _ADAPT * self.usual * (1 if step > self.usual else -1)
             self.now = self._floor = t
             self._in_order = 0
             return t
@@ -63,9 +66,3 @@ class Clock:
     def give_up(self, t: float) -> None:
         """Leaves out later samples whose time is not after t [s]."""
         self._floor = max(self._floor, t)
-
-    def _count(self, step: float) -> None:
-        if self.usual == 0.0:
-            self.usual = max(step, _SHORTEST)
-        self.lost += max(round(step / self.usual) - 1, 0)
-        self.usual += _ADAPT * self.usual * (1 if step > self.usual else -1)

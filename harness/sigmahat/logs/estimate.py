@@ -140,43 +140,32 @@ def estimate(
             t = replay.samples.T * np.arange(len(replay.samples.values), dtype=np.float64)
             series = Series.of(slave.fmu, values, replay.every, t)
             return replace(_result(replay, replay.answer().curve), series=series)
-        return _written(replay, Path(folder), progress, mcap, findings)
-
-
-def _written(
-    replay: Replay,
-    folder: Path,
-    progress: Callable[[int], object],
-    mcap: bool,
-    findings: list[tuple[str, str]] | None,
-) -> Estimate:
-    """The result, after all files are written."""
-    fmu = replay.slave.fmu
-    units = {name: fmu.variable(name).unit for name in OUTPUTS}
-    with ExitStack() as files:
-        table = files.enter_context(EstimateWriter(replay.log, replay.samples, units, folder))
-        adds: list[Callable[[Mapping[str, NDArray[Any]]], object]] = [table.add]
-        if mcap:
-            adds.append(files.enter_context(mcap_file(folder / MCAP, fmu, replay.samples.T)))
-        digest = sha256(replay.log.path)
-        replay.run(lambda outputs: [add(outputs) for add in adds], progress, digest)
-    write_learned(replay.slave, replay.every, replay.logs, folder / LEARNED.file)
-    answered = replay.answer()
-    sheet.write(data_sheet(replay, answered.curve), folder / sheet.FORMAT.file)
-    result = _result(replay, answered.curve)
-    write_curve(answered.curve, folder / CURVE)
-    write_points(answered.points, folder / POINTS)
-    notes = [*result.notes, *(each.in_words for each in result.changes)]
-    replayed = Replayed(
-        *(REPLAYED.name, REPLAYED.version, str(result.log), result.ticks, result.skipped, result.T),
-        changes=[each.t for each in result.changes],
-        doubt=replay.statistics.doubts,
-        notes=notes,
-        findings=findings,
-    )
-    write_json(asdict(replayed), folder / REPLAYED.file)
-    _save_figure(replay, answered, folder)
-    return result
+        folder, fmu = Path(folder), slave.fmu
+        units = {name: fmu.variable(name).unit for name in OUTPUTS}
+        with ExitStack() as files:
+            table = files.enter_context(EstimateWriter(log, replay.samples, units, folder))
+            adds: list[Callable[[Mapping[str, NDArray[Any]]], object]] = [table.add]
+            if mcap:
+                adds.append(files.enter_context(mcap_file(folder / MCAP, fmu, replay.samples.T)))
+            digest = sha256(log.path)
+            replay.run(lambda outputs: [add(outputs) for add in adds], progress, digest)
+        write_learned(slave, replay.every, replay.logs, folder / LEARNED.file)
+        answered = replay.answer()
+        sheet.write(data_sheet(replay, answered.curve), folder / sheet.FORMAT.file)
+        result = _result(replay, answered.curve)
+        write_curve(answered.curve, folder / CURVE)
+        write_points(answered.points, folder / POINTS)
+        replayed = Replayed(
+            *(REPLAYED.name, REPLAYED.version, str(log.path)),
+            *(result.ticks, result.skipped, result.T),
+            changes=[each.t for each in result.changes],
+            doubt=replay.statistics.doubts,
+            notes=[*result.notes, *(each.in_words for each in result.changes)],
+            findings=findings,
+        )
+        write_json(asdict(replayed), folder / REPLAYED.file)
+        _save_figure(replay, answered, folder)
+        return result
 
 
 def _result(replay: Replay, found: Curve) -> Estimate:

@@ -38,7 +38,12 @@ def run(experiment: Experiment) -> Motion:
     held = experiment.control is not None or experiment.drive is not Drive.LINEAR
     ticks = _ticks(experiment, 0, round(experiment.duration / experiment.T))
     t = _sample_times(experiment, ticks)
-    inputs = {"tau": _torque(experiment, ticks if held else t), **_other_inputs(experiment, t)}
+    inputs = {"tau": _torque(experiment, ticks if held else t)}
+    inputs["tau_ext"] = np.full_like(t, experiment.load)
+    if experiment.lever_arm is not None:
+        inputs["r"] = experiment.lever_arm(t)
+    ramp = np.minimum(t / DRIFT_TIME, 1.0)
+    inputs |= {name: change * ramp for name, change in experiment.drift.items()}
     first = 0.0 if held else float(inputs["tau"][0])
     table = np.column_stack(list(inputs.values()))
     with Slave(installed(PLANT), "plant") as plant:
@@ -94,14 +99,6 @@ def _torque(experiment: Experiment, t: Array) -> Array:
     nodes = _ticks(experiment, -around, steps + around)
     command = experiment.torque(nodes - experiment.rest) * (nodes >= experiment.rest)
     return np.interp(t, nodes, command)
-
-
-def _other_inputs(experiment: Experiment, t: Array) -> dict[str, Array]:
-    inputs = {"tau_ext": np.full_like(t, experiment.load)}
-    if experiment.lever_arm is not None:
-        inputs["r"] = experiment.lever_arm(t)
-    ramp = np.minimum(t / DRIFT_TIME, 1.0)
-    return {**inputs, **{name: change * ramp for name, change in experiment.drift.items()}}
 
 
 def _start(experiment: Experiment) -> dict[str, float | int]:

@@ -44,17 +44,13 @@ def _stacked(*every: Panel) -> Callable[[Recording], Figure]:
     return draw
 
 
-def _reversal(signal: str, half_width: float) -> Callable[[Recording], slice]:
+def _reversal(signal: str, half_width: float, recording: Recording) -> slice:
     """Samples around the first change of the sign of a signal of the plant after 1 s."""
-
-    def part(recording: Recording) -> slice:
-        t, later = recording.t, recording.t > 1.0
-        changes = np.flatnonzero(np.diff(np.sign(recording.plant[signal][later])))
-        # Without a change, the middle.
-        centre = t[later][changes[0]] if len(changes) else t[len(t) // 2]
-        return window(t, float(centre), half_width)
-
-    return part
+    t, later = recording.t, recording.t > 1.0
+    changes = np.flatnonzero(np.diff(np.sign(recording.plant[signal][later])))
+    # Without a change, the middle.
+    centre = t[later][changes[0]] if len(changes) else t[len(t) // 2]
+    return window(t, float(centre), half_width)
 
 
 def _differenced(recording: Recording) -> Array:
@@ -190,11 +186,15 @@ FIGURES: dict[str, Callable[[Recording], Figure]] = {
     "fig4-velocity": _stacked(
         panel(_VELOCITY, legend=Axes.legend),
         # Where the quantisation is largest compared with the velocity.
-        panel(_VELOCITY, _reversal("theta_dot", 0.05), "at a reversal"),
+        panel(_VELOCITY, partial(_reversal, "theta_dot", 0.05), "at a reversal"),
     ),
     "fig5-flexibility-torque": _stacked(
         panel(_FLEXIBILITY_TORQUE, legend=_two_columns),
-        panel(_FLEXIBILITY_TORQUE, _reversal("tau_e", 0.25), "where the torque changes sign"),
+        panel(
+            _FLEXIBILITY_TORQUE,
+            partial(_reversal, "tau_e", 0.25),
+            "where the torque changes sign",
+        ),
     ),
     "fig6-stiffness": _stacked(
         panel(stiffness(), legend=_two_columns),
