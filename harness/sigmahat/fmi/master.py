@@ -79,11 +79,7 @@ def simulate(
     t = T * np.arange(int(steps) + 1, dtype=np.float64)
     times = step_times(t, T)
     with ExitStack() as stack:
-
-        def instantiate(fmu: str, name: str) -> Slave:
-            return stack.enter_context(Slave(named(str(fmu)), name))
-
-        plant_slave = instantiate(plant.fmu, "plant")
+        plant_slave = stack.enter_context(Slave(named(str(plant.fmu)), "plant"))
         names, values = list(plant.inputs), np.empty((len(t), len(plant.inputs)))
         for i, signal in enumerate(plant.inputs.values()):
             values[:, i] = signal(t)
@@ -94,7 +90,7 @@ def simulate(
         tick = SampleLoop()
         truth.add_to(tick)
         for name, estimator in estimators.items():
-            slave = instantiate(estimator.fmu, name)
+            slave = stack.enter_context(Slave(named(str(estimator.fmu)), name))
             slave.initialize(estimator.start)
             wires = np.empty(len(estimator.connections))
             outputs = plant_slave.fmu.references(estimator.connections.values(), "output")

@@ -33,12 +33,9 @@ class Log(ABC):
     """Named columns of numbers, not always of the same length."""
 
     def __init__(self, path: Path, columns: Mapping[str, int]) -> None:
-        self.path = path
-        """The file."""
-        self.columns = columns
-        """Number of samples of each column."""
-        self.notes: list[str] = []
-        """Sentences about the reading of the file."""
+        self.path = path  #: The file.
+        self.columns = columns  #: Number of samples of each column.
+        self.notes: list[str] = []  #: Sentences about the reading of the file.
 
     def read(self, name: str) -> Array:
         """One column, [size: samples]; nan where a sample is missing.

@@ -153,11 +153,9 @@ def quantity_panels(reduced: Reduced, estimator: str) -> Iterator[Panel]:
 
 def sampling(reduced: Reduced) -> list[str]:
     """The samples that the plots show, in words."""
-    if reduced.bucket == 1:
+    if reduced.whole is None:  # the signals are short
         return ["Every sample is in the plots: zoom in until single counts of the encoders show."]
     ends = f"the least and the greatest of every {reduced.bucket} samples"
-    if reduced.whole is None:
-        return [f"The plots have {ends}."]
     first, last = reduced.whole
     return [
         f"Every sample is in the plots from {first:.6g} s to {last:.6g} s, the shaded part: zoom in"

@@ -25,9 +25,8 @@ from sigmahat.runs.scenario import Sine, Sines
 def other_joint(experiment: Experiment) -> Experiment:
     """Another joint of the kind, without misfits: other inertias, friction and stiffness."""
     rng = np.random.default_rng([experiment.seed, 1])
-    inertia, friction, link, stiffness = np.exp(
-        rng.standard_normal(4) * (0.25, 0.4, 0.3, 0.3)
-    ).tolist()
+    drawn = np.exp(rng.standard_normal(4) * (0.25, 0.4, 0.3, 0.3))
+    inertia, friction, link, stiffness = drawn.tolist()
     factors = {
         "motor.B": inertia,
         "motor.D_theta": friction,

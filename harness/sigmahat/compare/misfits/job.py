@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from functools import partial
+from operator import add
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,9 +42,7 @@ class Score:
     wrong: int = 0  # instants that are confident, with an error above WRONG
 
     def __add__(self, other: Score) -> Score:
-        return Score(
-            *(a + b for a, b in zip(vars(self).values(), vars(other).values(), strict=True))
-        )
+        return Score(*map(add, astuple(self), astuple(other)))
 
     @property
     def figures(self) -> dict[str, float]:
@@ -163,17 +162,11 @@ def run_once(condition: int, joint: int, seed: int) -> Score:
 
 def estimate(experiment: Experiment, motion: Motion, torque_gain: float) -> Score:
     """The score of FilteredRegression on the samples of a run; torque_gain as for settings()."""
-    names = list(motion.measured)
     values = np.column_stack(list(motion.measured.values()))
-    samples = Samples(experiment.T, names, values)
+    samples = Samples(experiment.T, list(motion.measured), values)
     with Slave(installed(ESTIMATOR), "FilteredRegression") as slave:
         slave.initialize(settings(experiment, torque_gain))
         (found,) = play(slave, samples, len(values))
-    t = experiment.T * np.arange(len(values))
-    judged = t >= experiment.rest + SETTLED
-    return score(
-        motion.sigma[judged],
-        found["sigma"][judged],
-        found["sigma_std"][judged],
-        found["confident"][judged],
-    )
+    judged = experiment.T * np.arange(len(values)) >= experiment.rest + SETTLED
+    outputs = (found[name][judged] for name in ("sigma", "sigma_std", "confident"))
+    return score(motion.sigma[judged], *outputs)

@@ -58,16 +58,8 @@ def run(experiment: Experiment) -> Motion:
     theta_c = np.zeros(len(t))  # angle of the secondary motor by its encoder
     if "r" in inputs:
         theta_c = _COUNT * np.floor((_RETRACTED - inputs["r"]) / _LEAD / _COUNT + 0.5)
-    return Motion(
-        {
-            "theta": columns["theta_measured"],
-            "q": columns["q_measured"],
-            "theta_c": theta_c,
-            "tau": columns["tau_measured"],
-        },
-        columns["sigma"],
-        columns["phi"],
-    )
+    measured = {name: columns[f"{name}_measured"] for name in ("theta", "q", "tau")}
+    return Motion({**measured, "theta_c": theta_c}, columns["sigma"], columns["phi"])
 
 
 def peak_deformation(experiment: Experiment) -> float:
@@ -83,9 +75,8 @@ def _ticks(experiment: Experiment, first: int, end: int) -> Array:
 def _sample_times(experiment: Experiment, ticks: Array) -> Array:
     """Times [s] with jitter, which stays below half a period so that they increase."""
     rng = np.random.default_rng(experiment.seed)
-    off = np.clip(
-        experiment.jitter * rng.standard_normal(len(ticks)), -_LARGEST_JITTER, _LARGEST_JITTER
-    )
+    off = experiment.jitter * rng.standard_normal(len(ticks))
+    off = np.clip(off, -_LARGEST_JITTER, _LARGEST_JITTER)
     off[0] = 0.0
     return ticks + experiment.T * off
 
