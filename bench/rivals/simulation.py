@@ -97,11 +97,11 @@ def run(joint: Joint) -> Run:
         for substep in range(round(SAMPLE_PERIOD / STEP)):
             for axis, state in zip(axes, physics.motors(), strict=True):
                 axis.act(*state)
-            before = physics.advance(axes, float(targets[k]))
+            physics.advance(axes, float(targets[k]))
             if substep == 0:
                 axis = axes[observed]
                 of_axis = {"torque": axis.torque, "late": axis.late, "command": axis.command}
-                rows.append({**before, **physics.instant(), **of_axis})
+                rows.append({**physics.instant(), **of_axis})
     return {name: np.array([row[name] for row in rows]) for name in rows[0]}
 
 
@@ -147,10 +147,11 @@ class _Axis:
         self.command = min(max(drive.feed_forward[k] + wanted, -drive.peak), drive.peak)
 
     def act(self, _theta: float, v: float, load: float) -> None:
-        """Sets the torque of the next step, and the friction `dry` that may resist it [N.m]."""
+        """Sets the torque of the next step, and the friction `dry` behind the gear [N.m]."""
         self.torque += self._share * (self._dead(self.command) - self.torque)
         self.late = self._late(self.torque)
-        self.dry = self._motor.friction.budget(v, self.torque, load / self._motor.gear)
+        gear = self._motor.gear
+        self.dry = gear * self._motor.friction.budget(v, self.torque, load / gear)
 
 
 class _Physics:
@@ -163,7 +164,6 @@ class _Physics:
         self._model = mujoco.MjModel.from_xml_string(_mjcf(joint))
         self._data: Any = mujoco.MjData(self._model)
         self._probe: Any = mujoco.MjData(self._model)
-        self._gears = [motor.gear for motor in joint.motors]
         self._theta, self._phi = (
             [int(self._model.joint(f"{name}_{i}").dofadr[0]) for i in range(len(joint.motors))]
             for name in ("theta", "phi")
@@ -182,30 +182,27 @@ class _Physics:
             for i, j in zip(self._theta, self._phi, strict=True)
         ]
 
-    def advance(self, axes: list[_Axis], target: float) -> dict[str, float]:
-        """One step with the torques and the largest friction of the axes of the motors; positions
-        and velocity before it.
+    def advance(self, axes: list[_Axis], target: float) -> None:
+        """One step with the torques and the largest friction of the axes of the motors.
 
         target  where the stiffness motor shall be, if there is one [rad]
         """
-        data, (i, j) = self._data, self._at
-        for k, (axis, dof) in enumerate(zip(axes, self._theta, strict=True)):
-            data.ctrl[k] = axis.torque
-            self._model.dof_frictionloss[dof] = self._gears[k] * axis.dry
-        theta_c = 0.0
+        data = self._data
+        data.ctrl[: len(axes)] = [axis.torque for axis in axes]
+        self._model.dof_frictionloss[self._theta] = [axis.dry for axis in axes]
         if self._travel:
             data.ctrl[-1] = self._travel * target
-            theta_c = float(data.qpos[self._slider]) / self._travel
-        x, theta_dot = data.qpos, float(data.qvel[i])
-        before = {"theta": float(x[i]), "phi": float(x[j]), "theta_dot": theta_dot}
-        self._probe.qpos[:] = data.qpos
+        self._probe.qpos[:], self._probe.qvel[:] = data.qpos, data.qvel
         self._engine.mj_step(self._model, data)
-        return {**before, "theta_c": theta_c}
 
     def instant(self) -> dict[str, float]:
-        """Acceleration and torques at the beginning of the step that `advance` made."""
-        data, (i, j) = self._data, self._at
+        """The observed joint at the beginning of the step that `advance` made."""
+        data, x, (i, j) = self._data, self._probe.qpos, self._at
         return {
+            "theta": float(x[i]),
+            "phi": float(x[j]),
+            "theta_dot": float(self._probe.qvel[i]),
+            "theta_c": float(x[self._slider]) / self._travel if self._travel else 0.0,
             "theta_ddot": float(data.qacc[i]),
             # A contact acts on both hinges, which have one axis; dry friction is of the motor.
             "friction": float(data.qfrc_constraint[i] - data.qfrc_constraint[j]),
