@@ -55,10 +55,8 @@ def _proposal(finding: Finding) -> str:
     if finding.proposed is None and not finding.others:
         return ""
     first = "" if finding.proposed is None else f"; try {_value(finding.proposed)}"
-    others = " or ".join(
-        key if value is None else f"{key} = {_value(value)}" for key, value in finding.others
-    )
-    return f"{first}; else look at {others}" if others else first
+    others = [key if v is None else f"{key} = {_value(v)}" for key, v in finding.others]
+    return f"{first}; else look at {' or '.join(others)}" if others else first
 
 
 def _value(value: Proposal) -> str:

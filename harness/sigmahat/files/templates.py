@@ -7,7 +7,5 @@ import jinja2
 
 def environment(*folders: Path, autoescape: bool = True) -> jinja2.Environment:
     """Jinja2 for the templates in these folders; a name without a value is an error."""
-    loader = jinja2.FileSystemLoader(folders)
-    return jinja2.Environment(
-        loader=loader, undefined=jinja2.StrictUndefined, autoescape=autoescape
-    )
+    loader, strict = jinja2.FileSystemLoader(folders), jinja2.StrictUndefined
+    return jinja2.Environment(loader=loader, undefined=strict, autoescape=autoescape)

@@ -134,9 +134,8 @@ class Recorder:
             group = [v for v in variables if _KINDS[v.type] == kind]
             dtype = np.float64 if kind == "Real" else np.int32
             self._tables[kind] = group, np.empty((samples, len(group)), dtype)
-        self._items = {
-            v.name: slave.fmu.items(v.name) for v in variables if v.type == "Enumeration"
-        }
+        enumerations = (v.name for v in variables if v.type == "Enumeration")
+        self._items = {name: slave.fmu.items(name) for name in enumerations}
 
     def add_to(self, loop: SampleLoop) -> None:
         """From now on the loop writes a row for each of its samples."""

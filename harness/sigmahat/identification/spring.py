@@ -36,8 +36,7 @@ class Spring:
     @property
     def covered(self) -> float:
         """Range of the deformation in the pieces [rad]."""
-        ends = [(float(np.min(each.phi)), float(np.max(each.phi))) for each in self.pieces]
-        return max(high for _, high in ends) - min(low for low, _ in ends)
+        return float(np.ptp(np.concatenate([each.phi for each in self.pieces])))
 
     def zero(self) -> float:
         """Deformation at which spring and constant torque cancel [rad]; nan if there is none.

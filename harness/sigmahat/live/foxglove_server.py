@@ -33,9 +33,8 @@ def _schema(joint: LiveJoint) -> foxglove.Schema:
         text = f"end of the 95 % interval of {of} [{joint.slave.fmu.variable(of).unit}]"
         for end in ("low", "high"):
             described["properties"][f"{of}_{end}"] = {"type": "number", "description": text}
-    return foxglove.Schema(
-        name="sigmahat.Estimate", encoding="jsonschema", data=json.dumps(described).encode()
-    )
+    data = json.dumps(described).encode()
+    return foxglove.Schema(name="sigmahat.Estimate", encoding="jsonschema", data=data)
 
 
 def write_layout(joints: Sequence[LiveJoint], folder: Path) -> None:

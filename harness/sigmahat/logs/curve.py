@@ -256,19 +256,16 @@ def curve(
     grids = [_grid(each, polynomial) for each in reach]
     if every["method"] == "FilteredRegression" and grids:
         found = _evaluated(slave, every, reach, grids)
-        polynomial = sheet.with_knees(
-            polynomial, *(found[name] for name in ("phi", "setPoint", "tau_e", "sigma"))
-        )
+        evaluated = (found[name] for name in ("phi", "setPoint", "tau_e", "sigma"))
+        polynomial = sheet.with_knees(polynomial, *evaluated)
         ends = np.cumsum([len(grid) for grid in grids])[:-1]
         values = zip(*(np.split(found[name], ends) for name in _OUTPUTS[:4]), strict=True)
-        branches = [
-            Branch(*at, phi, *own) for at, phi, own in zip(reach, grids, values, strict=True)
-        ]
-    else:
-        branches = []
-        for at, phi in zip(reach, grids, strict=True):
-            tau_e, sigma = polynomial.at(phi, at.set_point)
-            branches.append(Branch(*at, phi, tau_e, None, sigma, None))
+        parts = zip(reach, grids, values, strict=True)
+        return Curve(polynomial, [Branch(*at, phi, *own) for at, phi, own in parts])
+    branches = []
+    for at, phi in zip(reach, grids, strict=True):
+        tau_e, sigma = polynomial.at(phi, at.set_point)
+        branches.append(Branch(*at, phi, tau_e, None, sigma, None))
     return Curve(polynomial, branches)
 
 
