@@ -138,7 +138,7 @@ def test_folder_that_is_a_file(out: str, shell: Shell) -> None:
     Path("file").write_text("mine")
     started = time.monotonic()
     line = shell.refused(f"reproduce --seeds 500 --out {out}")
-    assert "file is a file" in line or "choose another folder with --out" in line
+    assert "got the file file" in line or "choose another folder with --out" in line
     assert time.monotonic() - started < 30  # the command fails before any computation
 
 
