@@ -12,9 +12,8 @@
  *       = F_f' eta - gamma^2 D_theta theta'_f d - gamma^2 B theta''_f b
  *         - |gamma| sign(theta')_f tau_C + further columns (point 6) ,
  *
- * each multiplied by the std deviation of its coefficient, so that all coefficients have the prior N(0, 1).
- * If the torque of the spring is measured or modelled, y is the torque of the spring, and the columns of the motor are
- * 0.
+ * each multiplied by the std deviation of its coefficient, so that all coefficients have the prior N(0, 1). If the
+ * torque of the spring is measured or modelled, y is the torque of the spring, and the columns of the motor are 0.
  *
  * To add a kind of column, add a row to sh_column_kinds, a line to list_columns, and a signal to signal_of or an
  * entry to entry_of.

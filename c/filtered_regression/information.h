@@ -87,9 +87,7 @@ sh_real sh_sum_of_products(const sh_real *a, const sh_real *b, int count);
 /* Returns the weighted sum of squares of y - x' beta for all samples, including the initial precision. */
 sh_real sh_information_squares(const sh_information *a, const sh_real *beta);
 
-/* Multiplies the weights of all samples by a forgetting factor, 0..1. No entry of D falls below
- * least.
- */
+/* Multiplies the weights of all samples by a forgetting factor, 0..1. No entry of D falls below least. */
 void sh_information_forget(sh_information *a, sh_real factor, sh_real least);
 
 /* Adds process noise: the parameters change by a random step along v of variance c, (U' D U)^-1 += c v v'. The variance

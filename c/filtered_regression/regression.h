@@ -249,8 +249,7 @@ void sh_drift_step(sh_refit *refit, sh_information *a, int column, sh_real varia
  */
 void sh_friction_drift(sh_regression_state *state, sh_real time, int step);
 
-/* Details 9 and 11: forgets data that contradict the model, and lets the curve drift for `time` [s]
- * along the last row.
+/* Details 9 and 11: forgets data that contradict the model, and lets the curve drift for `time` [s] along the last row.
  */
 void sh_forget(sh_regression_state *state, const sh_parameters *p, sh_real time);
 

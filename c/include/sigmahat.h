@@ -1,8 +1,7 @@
 /* sigmahat: the stiffness of a flexible robot joint, estimated on line from positions and torque.
  *
- * Equation numbers in c/ are from the paper "Robust Estimation of Variable Stiffness in Flexible
- * Joints" by Flacco, De Luca, Sardellitti and Tsagarakis, IROS 2011. One tick of the estimator is
- * Fig. 1 of the paper.
+ * Equation numbers in c/ are from the paper "Robust Estimation of Variable Stiffness in Flexible Joints" by Flacco, De
+ * Luca, Sardellitti and Tsagarakis, IROS 2011. One tick of the estimator is Fig. 1 of the paper.
  *
  *     sh_parameters p;
  *     sh_violation violation;
@@ -337,8 +336,7 @@ int sh_parameters_check(const sh_parameters *p, sh_violation *violation);
  */
 sh_real sh_parameters_largest_deformation(const sh_parameters *p);
 
-/* Starts the estimator, and sets the estimate of the initial state: eta_0 at phi = 0 and
- * theta_c = 0.
+/* Starts the estimator, and sets the estimate of the initial state: eta_0 at phi = 0 and theta_c = 0.
  *
  * p  parameters that pass sh_parameters_check
  */
@@ -350,10 +348,9 @@ void sh_estimator_start(sh_estimator *estimator, const sh_parameters *p, sh_esti
  * z         the measurements of this tick
  * estimate  in: as the last tick, or sh_estimator_start, left it; out: the new estimate
  *
- * Returns 0, or 1 if the tick is skipped: a measurement is not finite or beyond
- * SH_LARGEST_MEASUREMENT, or the numbers overflow. A skipped tick is counted and sets estimate->valid
- * to 0. The other members of the estimate do not change. The state changes only if the numbers overflow. After such a
- * gap, the first good sample depends on the method:
+ * Returns 0, or 1 if the tick is skipped: a measurement is not finite or beyond SH_LARGEST_MEASUREMENT, or the numbers
+ * overflow. A skipped tick is counted and sets estimate->valid to 0. The other members of the estimate do not change.
+ * The state changes only if the numbers overflow. After such a gap, the first good sample depends on the method:
  *
  * SH_METHOD_PAPER2011 advances its filters over the whole gap. If the gap is shorter than 2 / K_I, the residual
  * integrates over the gap as over one long sample. After a longer gap, the residual starts from its last value. With

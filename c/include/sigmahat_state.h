@@ -7,9 +7,7 @@
 #ifndef SIGMAHAT_STATE_H
 #define SIGMAHAT_STATE_H
 
-/* Method Paper2011: ud_factor.h, least_squares.h, kinematic_kalman.h, torque_residual.h,
- * paper2011.c
- */
+/* Method Paper2011: ud_factor.h, least_squares.h, kinematic_kalman.h, torque_residual.h, paper2011.c */
 
 enum {
     SH_MAX_PARAMETERS = SH_MAX_BASIS,
@@ -279,9 +277,7 @@ typedef struct {
     sh_posterior posterior;
     int unread; /* rows of the data, the first ones, that have not been read */
     int step;   /* next one of what a refit does behind the rows */
-    /* Sample for the next step, and its weight: what the data left of the newest row, or process
-     * noise of friction.
-     */
+    /* Sample for the next step, and its weight: what the data left of the newest row, or process noise of friction. */
     sh_real x[SH_MAX_ROW], w;
     int trial; /* group that the refit tries, in its last steps of the next one; 0: none, it changes
                   the estimate */

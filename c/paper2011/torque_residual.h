@@ -11,8 +11,7 @@
 /* Starts the residual at a sample: r_e = 0 and I_tau = 0. */
 void sh_torque_residual_start(sh_torque_residual *residual, sh_real tau);
 
-/* Advances the residual by one sample, (8), and returns the estimate gamma r_e of the flexibility
- * torque [N.m].
+/* Advances the residual by one sample, (8), and returns the estimate gamma r_e of the flexibility torque [N.m].
  *
  * dtheta      change of the motor's position since the last sample, after the gear [rad]
  * dtheta_dot  change of its velocity [rad/s]
