@@ -1,4 +1,4 @@
-/* Checks whether a state from elsewhere can be used; the check of the method decides. */
+/* Checks whether an estimator state, for example from a file, can be used with the parameters. */
 #include <stddef.h>
 
 #include "method.h"

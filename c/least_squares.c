@@ -6,9 +6,8 @@
 #include "real_math.h"
 #include "ud_factor.h"
 
-/* Largest w rho and largest prediction error that are accepted. The update changes eta_i by at most
- * sqrt(w P_0) |epsilon| / 2, and shrinks no D_j by more than 1 + w rho. So nothing overflows, and D
- * stays above 0.
+/* Largest w rho and largest prediction error that the update accepts. The update changes eta_i by at most sqrt(w P_0)
+ * |epsilon| / 2, and divides each D_j by at most 1 + w rho. With this limit, no number overflows, and D stays above 0.
  */
 static const sh_real LARGEST = SH_LARGE;
 
@@ -66,7 +65,7 @@ static sh_real sample_weight(int kind, sh_real factor, sh_real rho)
     return 1;
 }
 
-/* (25) for the sample that was projected last. */
+/* Updates the estimate by (25) with the sample that sh_ud_factor_project projected last. */
 static int take(sh_least_squares *rls, sh_real w, sh_real rho, sh_real epsilon)
 {
     const sh_real *PF;

@@ -4,7 +4,7 @@
  *
  *     |eta - eta_0|^2 / P_0 + sum_k w(k) (y(k) - F(k)' eta)^2 .
  *
- * The three kinds differ in the weight only. (25) is
+ * The three kinds of least squares differ only in the weight. (25) is
  *
  *     K = P F / (1 + rho) ,   eta += a K epsilon ,   P -= a K F' P ,
  *
@@ -19,7 +19,7 @@
 
 #include "sigmahat.h"
 
-/* Quantities of one sample, from before the update but `variance`. */
+/* Quantities of one sample. All members but `variance` are computed before the update. */
 typedef struct {
     sh_real epsilon;  /* prediction error, (14), in the unit of y */
     sh_real rho;      /* F' P F, (14) */
@@ -35,7 +35,7 @@ typedef struct {
  */
 void sh_least_squares_start(sh_least_squares *rls, int size, const sh_real *eta_0, sh_real P_0);
 
-/* Takes one sample, (25).
+/* Updates the estimate with one sample, (25).
  *
  * kind    SH_RLS_*
  * factor  c of (27) for SH_RLS_ENHANCED, > 0; a for SH_RLS_CONSTANT_FACTOR, in
@@ -43,8 +43,8 @@ void sh_least_squares_start(sh_least_squares *rls, int size, const sh_real *eta_
  * F       [size: size] regressor
  * y       torque that F' eta is fitted to [N.m]
  *
- * Returns 1, and sets innovation. Returns 0, without any change of the estimate and of innovation,
- * if the sample is not finite or so large that the update would overflow.
+ * Returns 1, and sets innovation. Returns 0 if the sample is not finite, or so large that the update would overflow. In
+ * this case, the estimate and innovation do not change.
  */
 int sh_least_squares_update(sh_least_squares *rls, int kind, sh_real factor, const sh_real *F,
                             sh_real y, sh_innovation *innovation);

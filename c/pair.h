@@ -1,9 +1,9 @@
-/* Two numbers that are neighbours in memory, computed with at once.
+/* Arithmetic with pairs: two numbers that are neighbours in memory and are processed together.
  *
- * Compilers use vector instructions for loops over long arrays. For the short loops of the
- * recursion they often do not, or spend more on moving numbers within registers than they gain. So
- * the pairs are written down. Where the processor has registers for two doubles, gcc and clang
- * compute a pair in one instruction. The plain C below has the same results to the last digit.
+ * Compilers use vector instructions for loops over long arrays. For the short loops of the recursion, vector
+ * instructions that a compiler chooses are often missing or slow. The loops therefore use the pairs of this header
+ * explicitly. Where the processor has registers for two doubles, gcc and clang compute a pair in one instruction. The
+ * plain C below has the same results to the last digit.
  */
 #ifndef SH_PAIR_H
 #define SH_PAIR_H
@@ -109,8 +109,8 @@ static inline sh_pair sh_pair_both(sh_real value)
     return sh_pair_of(value, value);
 }
 
-/* ab = a' b and ac = a' c for a, b, c [size: size]. Even and odd entries have a sum each, so that
- * one does not wait for the other.
+/* ab = a' b and ac = a' c for a, b, c [size: size]. Even and odd entries have separate sums, so that the processor can
+ * compute both sums in parallel.
  */
 static inline void sh_scalar_products(const sh_real *a, const sh_real *b, const sh_real *c,
                                       int size, sh_real *ab, sh_real *ac)

@@ -5,7 +5,7 @@
 #include "method.h"
 #include "real_math.h"
 
-/* A parameter of each type; parameters.inc has the tables. */
+/* Entries of the parameter tables in parameters.inc, one struct for each type of parameter. */
 typedef struct {
     const char *name;
     size_t offset; /* in sh_parameters */
@@ -27,9 +27,9 @@ typedef struct {
     {AT(place), range, (sh_real)(start), (sh_real)(min), (sh_real)(max)},
 #define INTEGER(place, start, min, max, range) {AT(place), range, start, min, max},
 
-/* 1e-9, 1e-15 and 1e-30 are least values of what must be above 0: far below what a machine has.
- * Limits of 1e-12, 1e-6, 1e6 and 1e12 are wide ones of what is squared or raised to a power: within
- * them the numbers stay finite.
+/* The limits 1e-9, 1e-15 and 1e-30 replace the condition "above 0", and are far below the values of real machines. The
+ * limits 1e-12, 1e-6, 1e6 and 1e12 belong to parameters that are squared or raised to a power. Within these wide
+ * limits, the powers stay finite.
  */
 #include "parameters.inc"
 
@@ -49,7 +49,7 @@ void sh_parameters_default(sh_parameters *p)
     }
     for (i = 0; i < INTEGER_COUNT; ++i) {
         const integer_parameter *r = &INTEGERS[i];
-        /* A smaller size may have been given to the compiler. */
+        /* The compiler option -DSH_MAX_N or -DSH_MAX_M may set a maximum below the start value. */
         *(int *)(void *)(bytes + r->offset) = r->start < r->max ? r->start : r->max;
     }
 }

@@ -1,6 +1,6 @@
-/* Functions of <math.h> for the type sh_real, and what depends on its range.
+/* Functions of <math.h> for the type sh_real, and limits that depend on the range of this type.
  *
- * <tgmath.h> cannot be used: the one of newlib, the C library of most controllers, refers to
+ * <tgmath.h> cannot be used, because of newlib, the C library of most controllers. The <tgmath.h> of newlib refers to
  * complex functions that newlib does not have.
  */
 #ifndef SH_REAL_MATH_H
@@ -32,7 +32,8 @@ static inline sh_real sh_square(sh_real x)
 
 #define SH_PI 3.14159265358979323846
 
-/* A number whose product with any number of practical size is far from overflow; in double its square, too.
+/* A large number whose product with any number of practical size does not overflow. In double precision, the square of
+ * SH_LARGE does not overflow, either.
  */
 #define SH_LARGE SH_FOR(SH_REAL, 1e150, 1e30f)
 

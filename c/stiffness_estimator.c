@@ -1,4 +1,4 @@
-/* One tick: from measurements to the stiffness by the method that the parameters choose. */
+/* One tick: computes the stiffness from the measurements by the method that the parameters choose. */
 #include <string.h>
 
 #include "method.h"
@@ -24,7 +24,9 @@ static sh_real polynomial(const sh_parameters *p, int i, sh_real set_point)
     return sum;
 }
 
-/* Sets the curve rls.eta_0, at phi = 0: only the powers 0 and 1 of phi count there. */
+/* Sets the start estimate from the curve rls.eta_0 at phi = 0. At phi = 0, the torque is the power 0 of phi, and the
+ * stiffness is the power 1.
+ */
 static void start_curve(const sh_parameters *p, sh_real set_point, sh_estimate *estimate)
 {
     const int linear = sh_torque_basis_linear(p->rls.symmetric);

@@ -1,8 +1,8 @@
 /* Separable polynomial basis of the flexibility torque, (18)-(23).
  *
- * The symmetric basis is the paper's: odd powers of the deformation, for a torque that is odd in
- * it, (16). The general basis has every power from 0 on, for transmissions that are softer to one
- * side or have an offset.
+ * The symmetric basis is the basis of the paper: odd powers of the deformation, for a torque that is an odd function of
+ * the deformation, (16). The general basis has all powers from 0 on, for transmissions that are softer to one side or
+ * have an offset.
  */
 #ifndef SH_TORQUE_BASIS_H
 #define SH_TORQUE_BASIS_H
@@ -18,7 +18,7 @@
  * F          [size: n m] F[j n + i] = l^j phi^(e_i)
  * dF         [size: n m] dF[j n + i] = e_i l^j phi^(e_i - 1)
  *
- * The torque (21) is F' eta, the stiffness (23) is dF' eta, with eta in the same order.
+ * The torque (21) is F' eta, and the stiffness (23) is dF' eta. The entries of eta have the order of F.
  */
 void sh_torque_basis(int symmetric, int n, int m, sh_real set_point, sh_real phi,
                      sh_real *restrict F, sh_real *restrict dF);

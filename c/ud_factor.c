@@ -1,8 +1,8 @@
-/* The arithmetic of P = U D U', and how U lies in memory so that it is fast.
+/* The arithmetic of P = U D U', and the order of the entries of U in memory, which makes the arithmetic fast.
  *
- * U is stored in panels of SH_PANEL = 4 rows. A panel begins at the diagonal and goes on column
- * after column; the four entries of a column are neighbours. The zeros and ones of the triangle are
- * stored too. For six parameters:
+ * U is stored in panels of SH_PANEL = 4 rows. A panel begins at the diagonal and stores one column after the other; the
+ * four entries of a column are neighbours. The ones on the diagonal and the zeros below the diagonal are also stored. U
+ * for six parameters:
  *
  *     column   0 1 2 3 4 5
  *     row 0    1 a b d g k   panel 0
@@ -16,10 +16,10 @@
  *
  *     memory   1000 a100 bc10 def1 ghij klmn  1000 o100
  *
- * Advantage: the four entries of a column are two pairs (pair.h). So every inner loop computes four neighbours in the
- * same way, without a test for the diagonal. Cost: the zeros and ones need memory (200 entries in place of 153 for 18
- * parameters). The loops below run over panels, and also compute with these unused places. For 3 parameters, this
- * costs much. Figures are in docs/performance.md.
+ * Advantage: the four entries of a column are two pairs (pair.h). Every inner loop computes four neighbours in the same
+ * way, without a test for the diagonal. Cost: the zeros and ones need memory (200 entries instead of 153 for 18
+ * parameters). The loops below also compute with the stored zeros and ones. For 3 parameters, this additional
+ * arithmetic takes much of the time. docs/performance.md has measured times.
  */
 #include "ud_factor.h"
 
@@ -30,11 +30,11 @@
 
 enum { TWO_COLUMNS = 2 * SH_PANEL, THREE_COLUMNS = 3 * SH_PANEL }; /* of a panel, in memory */
 
-/* Below it, entries of D may underflow soon. */
+/* Below this limit, the next updates may let an entry of D underflow. */
 static const sh_real FAR_ABOVE_UNDERFLOW = SH_FOR(SH_REAL, 1e-290, 1e-30f);
 
-/* Place of entry (i, j) of U, i <= j, in memory. The panel of row i begins at row and column
- * i - i % SH_PANEL.
+/* Returns the index of entry (i, j) of U in memory, for i <= j. The panel of row i begins at row and column i - i %
+ * SH_PANEL.
  */
 static int place(int size, int i, int j)
 {
@@ -43,8 +43,8 @@ static int place(int size, int i, int j)
     return first * size - first * (first - SH_PANEL) / 2 + (j - first) * SH_PANEL + row;
 }
 
-/* A column of U is met panel by panel: distance from its entries in panel 0 to those in panel 1.
- * From each panel to the next it is SH_PANEL * SH_PANEL less.
+/* Returns the distance in memory between the entries of a column in panel 0 and in panel 1. From each panel to the
+ * next, this distance decreases by SH_PANEL * SH_PANEL.
  */
 static int first_stride(int size)
 {
@@ -64,14 +64,14 @@ void sh_ud_factor_start(sh_ud_factor *P, int size, sh_real P_0)
     }
 }
 
-/* One panel's part of column u of U in U' F: for even and for odd rows, as they are neighbours. */
+/* Returns the product of column u of U with F within one panel, as one sum for even and one for odd rows. */
 static inline sh_pair panel_product(const sh_real *u, sh_pair F_0, sh_pair F_1)
 {
     return sh_pair_add(sh_pair_multiply(sh_pair_load(u), F_0),
                        sh_pair_multiply(sh_pair_load(u + 2), F_1));
 }
 
-/* The same in a panel where rows 2 and 3 are zero. */
+/* Returns the product of column u of U with F in a panel where rows 2 and 3 of the column are zero. */
 static inline sh_pair upper_panel_product(const sh_real *u, sh_pair F_0)
 {
     return sh_pair_multiply(sh_pair_load(u), F_0);
@@ -132,8 +132,8 @@ static void multiply_two(const sh_ud_factor *P, const sh_real *F, int j, const s
     sh_pair_store(f + j, sh_pair_sums(sum_0, sum_1));
 }
 
-/* f = U' F. At the end there may be one column less than is computed at once. In its place the next panel is in memory,
- * and this result is not used.
+/* f = U' F. The last step may compute one column more than U has. This additional column reads the memory of the next
+ * panel, and its result is not used.
  */
 static void multiply(const sh_ud_factor *P, const sh_real *F, sh_real *f)
 {
@@ -199,9 +199,9 @@ sh_real sh_ud_factor_project(sh_ud_factor *P, const sh_real *F)
     return before;
 }
 
-/* One panel's part of column j of U in the update: u -= s_j p and p += g_j u.
+/* Updates the part of column j of U in one panel: u -= s_j p and p += g_j u.
  *
- * s, g  twice the same number
+ * s, g  pairs that contain the same number twice
  */
 static inline void rotate(sh_real *u, sh_pair s, sh_pair g, sh_pair *p_0, sh_pair *p_1)
 {
@@ -213,8 +213,8 @@ static inline void rotate(sh_real *u, sh_pair s, sh_pair g, sh_pair *p_0, sh_pai
     *p_1 = sh_pair_add(*p_1, sh_pair_multiply(g, u_1));
 }
 
-/* A column whose D_j has underflowed to 0 has no part in P any more. The column is cleared, because otherwise
- * rounding errors alone would change it and grow until they overflow.
+/* Clears each column of U whose D_j has underflowed to 0. Such a column has no effect on P, but rounding errors in the
+ * column would grow until they overflow.
  */
 static void clear_underflowed(sh_ud_factor *P)
 {
@@ -258,9 +258,9 @@ const sh_real *sh_ud_factor_update(sh_ud_factor *P, sh_real w)
     if (!(P->least > FAR_ABOVE_UNDERFLOW)) {
         clear_underflowed(P);
     }
-    /* Panel after panel, as an entry of p depends on its own row of U alone. Two panels at a time, as
-     * they share the factors of the columns. In the first column of a panel only the entry on the
-     * diagonal is not zero: there p becomes g_i, and u does not change.
+    /* The loop takes one panel after the other, because an entry of p depends only on the same row of U. Two panels are
+     * updated together, because they share the factors of the columns. In the first column of a panel, only the
+     * diagonal entry is not zero. In this column, p becomes g_i, and u does not change.
      */
     for (i = 0; i + SH_PANEL < size; i += 2 * SH_PANEL) {
         sh_real *next = u + stride;

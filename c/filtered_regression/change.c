@@ -1,12 +1,12 @@
 /* A stiffness that changes (detail 15): three hypotheses predict each block, and the estimate follows the best one.
  *
  *     0  the joint is as before: the prior and all blocks
- *     1  the spring has changed since t: the same at t, but of its columns, which are the first ones, only the
- *        prior is known. The rows behind contain what the data show about motor and friction.
- *     2  friction has changed: all blocks, after a change of friction by about the deviations of its priors
+ *     1  the spring has changed since t: the first columns, which belong to the spring, start again at t from their
+ *        prior. The rows behind these columns keep the information of earlier data about motor and friction.
+ *     2  friction has changed by about the std deviations of its priors: the prior and all blocks
  *
- * Hypothesis 2 begins when there is evidence against hypothesis 0. Hypothesis 2 uses the blocks in which friction
- * drifts. If nothing has changed, these blocks become the blocks of hypothesis 0 again.
+ * Hypothesis 2 begins when there is evidence against hypothesis 0. Hypothesis 2 uses the matrix `drifting` of the
+ * blocks. If nothing has changed, this matrix becomes equal to the matrix `constant` of hypothesis 0 again.
  */
 #include "constants.h"
 #include "regression.h"
@@ -21,8 +21,8 @@ void sh_change_start(sh_regression_state *state)
     state->history.change_age = -1;
 }
 
-/* Hypothesis 1 begins now: t is the end of the last block without evidence. A block from before t must not count for
- * the changed spring: it would contradict the blocks behind t.
+/* Starts hypothesis 1 now: t is the end of the last block without evidence. A block before t must not count for the
+ * changed spring, because that block contradicts the blocks after t.
  */
 static void begin(sh_regression_state *state)
 {
@@ -34,8 +34,8 @@ static void begin(sh_regression_state *state)
     change->evidence = change->blocks = 0;
 }
 
-/* Hypothesis 2 begins now, if there is friction that does not drift anyway. A sample of this drift that waits is
- * dropped: it belongs to the blocks as they were.
+/* Starts hypothesis 2 now, if the regression has columns of friction and assumes constant friction. A prepared sample
+ * of the drift of friction is dropped, because the sample was computed from the earlier blocks.
  */
 static void begin_friction(sh_regression_state *state, const sh_parameters *p)
 {
@@ -50,7 +50,9 @@ static void begin_friction(sh_regression_state *state, const sh_parameters *p)
     }
 }
 
-/* Process noise of 1, the variance of the prior, for one column a row: step 0 sets its sample, step 1 takes it. */
+/* Adds process noise of variance 1, the variance of the prior, to one column in each row. Step 0 prepares a sample with
+ * negative weight, and step 1 takes this sample.
+ */
 int sh_change_widens_friction(sh_regression_state *state, int step)
 {
     sh_information *const blocks = &state->blocks.drifting;
@@ -70,7 +72,9 @@ int sh_change_widens_friction(sh_regression_state *state, int step)
     return 1;
 }
 
-/* Nothing has changed. Blocks that other friction explains clearly better may still show that it drifts. */
+/* Ends hypothesis 2 without a change. If other friction explains the blocks clearly better, the matrix `drifting`
+ * stays, because the blocks may still show that friction drifts.
+ */
 static void end_friction(sh_regression_state *state)
 {
     sh_change *change = &state->change;
@@ -81,9 +85,9 @@ static void end_friction(sh_regression_state *state)
     change->friction_blocks = 0;
 }
 
-/* If a block contradicts hypothesis 1 while one block alone may be all the evidence, the spring has changed behind t.
- * Then t becomes the begin of this block, which hypothesis 0 has not taken yet. Hypothesis 1 leaves this block out: the
- * spring changes in it.
+/* If a block contradicts hypothesis 1, and one block alone may be all the evidence, the spring has changed after t. In
+ * this case, t becomes the begin of this block, which hypothesis 0 has not taken yet. Hypothesis 1 leaves this block
+ * out, because the spring changes in this block.
  */
 int sh_change_begins_anew(sh_regression_state *state, sh_real error)
 {
@@ -95,10 +99,11 @@ int sh_change_begins_anew(sh_regression_state *state, sh_real error)
     return 1;
 }
 
-/* Blocks and data become the blocks of the hypothesis that is in blocks.drifting. The data of all samples contain
- * samples from behind t, which contradict what these data say about the motor. The next posterior follows. It has the
- * prior twice, as the blocks contain the prior; what the blocks say soon outweighs the prior. The sums that describe
- * the noise of single samples begin at 0: the mean row of a block hardly contains this noise.
+/* Adopts the hypothesis in blocks.drifting: its matrix replaces the blocks and the data of all samples. The data of all
+ * samples must be replaced, because their samples after t contradict their information about the motor. The next
+ * posterior contains the prior twice, because the blocks also contain the prior, but the blocks soon outweigh the
+ * prior. The sums that describe the noise of single samples begin at 0, because the mean row of a block hardly contains
+ * this noise.
  */
 static void adopt(sh_regression_state *state, const sh_parameters *p)
 {
@@ -120,7 +125,9 @@ static void adopt(sh_regression_state *state, const sh_parameters *p)
     begin(state);
 }
 
-/* Hypothesis 1 is right if it is clearly better than hypothesis 2, or better in the end. */
+/* Adopts hypothesis 1 if the blocks prefer hypothesis 1 to hypothesis 2 clearly, or at all after SH_BLOCKS_TO_DECIDE
+ * blocks.
+ */
 static void decide(sh_regression_state *state, const sh_parameters *p)
 {
     sh_change *change = &state->change;
@@ -135,15 +142,17 @@ static void decide(sh_regression_state *state, const sh_parameters *p)
     }
 }
 
-/* The mean with one more value, at least 1: the value counts as `most` times the mean at most. */
+/* Returns the mean of `blocks` values after one more value, at least 1. A value above `most` times the mean counts as
+ * `most` times the mean.
+ */
 static sh_real usual(sh_real mean, sh_real value, sh_real most, sh_real blocks)
 {
     return sh_fmax(mean + (sh_fmin(value, most * mean) - mean) / blocks, 1);
 }
 
-/* g = max(0, g + min(z_0 / l, c) - 2 min(z_1 / l, 12.5) - 2), c = max(50 / m, 25), where z are squares of errors over
- * their variances, l >= 1 is their usual size, and m >= 1 is the usual misfit: a misfit makes all hypotheses wrong all
- * the time.
+/* g = max(0, g + min(z_0 / l, c) - 2 min(z_1 / l, 12.5) - 2), c = max(50 / m, 25), where z are squared errors divided
+ * by their variances, l >= 1 is the usual value of z, and m >= 1 is the usual misfit. A permanent misfit makes all
+ * hypotheses wrong, so the usual misfit reduces the limit c.
  */
 void sh_change_judge(sh_regression_state *state, const sh_parameters *p, sh_real before,
                      sh_real spring, sh_real friction)
@@ -164,7 +173,7 @@ void sh_change_judge(sh_regression_state *state, const sh_parameters *p, sh_real
     if (state->blocks.count < SH_SHORTEST_PAST) {
         return;
     }
-    /* Not in the first block of either hypothesis. */
+    /* The preference does not use the first block of a hypothesis. */
     if (change->friction_blocks > 1 && change->blocks > 0) {
         change->preference += sh_fmin(friction / level, SH_LARGEST_EVIDENCE) -
                               sh_fmin(spring / level, SH_LARGEST_EVIDENCE);

@@ -6,14 +6,14 @@
  *     gamma^2 B (1 + b) theta'' + gamma^2 D_theta (1 + d) theta' + |gamma| sign(theta') tau_C
  *         = gamma tau + tau_e(q - theta) .
  *
- * With all signals through the filter H (index f), and tau_e = F' eta of (21), it is the regression
+ * With all signals through the filter H (index f), and tau_e = F' eta of (21), the equation of motion is the regression
  *
  *     y = gamma (B gamma theta''_f + D_theta gamma theta'_f - tau_f)
  *       = F_f' eta - gamma^2 D_theta theta'_f d - gamma^2 B theta''_f b
  *         - |gamma| sign(theta')_f tau_C + further columns (point 6) ,
  *
- * each multiplied by the std deviation of its coefficient, so that all coefficients have the prior N(0, 1).
- * Where the torque of the spring is measured or modelled, y is that torque, and the columns of the motor are 0.
+ * each multiplied by the std deviation of its coefficient, so that all coefficients have the prior N(0, 1). If the
+ * torque of the spring is measured or modelled, y is the torque of the spring, and the columns of the motor are 0.
  *
  * To add a kind of column, add a row to sh_column_kinds, a line to list_columns, and a signal to signal_of or an
  * entry to entry_of.
@@ -27,7 +27,7 @@
 
 static const sh_real DEAD_ZONES[SH_WIDTHS] = SH_DEAD_ZONES;
 static const sh_real HYSTERESES[SH_WIDTHS] = SH_HYSTERESES;
-/* Knees: at 0, and on both sides at a first and at a second place. */
+/* Indices of the knees: at deformation 0, and on both sides at a first and at a second deformation. */
 enum { AT_ZERO, LEFT, RIGHT, SECOND_LEFT, SECOND_RIGHT, KNEES };
 
 int sh_is_measured(const sh_parameters *p)
@@ -51,16 +51,16 @@ int sh_has_nominal_curve(const sh_parameters *p)
 
 /* ---- the table --------------------------------------------------------------------------- */
 
-/* A std deviation of sh_parameters.prior is given in this unit. The last two are 0 without dry friction of the motor,
- * and without a curve rls.eta_0; else 1.
+/* Units of the std deviations in sh_parameters.prior. IF_DRY is 1 if the motor has dry friction, and IF_CURVE is 1 if
+ * there is a curve rls.eta_0; otherwise, the units are 0.
  */
 enum { ONE, TAU_E, K_0, TAU_C, IF_DRY, IF_CURVE };
 
 #define PRIOR(member) (int)offsetof(sh_parameters, prior.member)
 #define POWER (SH_IS_CURVE | SH_IS_POWER)
 
-/* The columns before DAMPING have their own filters, with signals in signal_of. The other columns have entries in
- * entry_of.
+/* Each column before DAMPING has a filter of its own, whose input is computed in signal_of. The entries of the other
+ * columns are computed in entry_of.
  */
 const sh_column_kind sh_column_kinds[SH_COLUMN_KINDS] = {
     [SH_COLUMN_POWER] = {PRIOR(tau_e), ONE, 0, POWER | SH_IS_EQUATION},
@@ -86,8 +86,8 @@ const sh_column_kind sh_column_kinds[SH_COLUMN_KINDS] = {
     [SH_COLUMN_INERTIA] = {PRIOR(B), ONE, 0, SH_IS_EQUATION},
 };
 
-/* Half width of a dead zone or an element of hysteresis, or place of a knee, over range.phi [1]; else 0. If the
- * torque is symmetric, a knee at a place > 0 is on both sides.
+/* Returns the half width of a dead zone or hysteresis, or the deformation at a knee, divided by range.phi [1]; else 0.
+ * If the torque is symmetric, a knee at a deformation above 0 is on both sides.
  */
 static sh_real width_or_place(const sh_column *column, const sh_parameters *p)
 {
@@ -141,7 +141,7 @@ int sh_power_of_phi(int symmetric, int i)
     return symmetric ? 2 * i + 1 : i;
 }
 
-/* Factor from the coefficient of l^j x^e / e to the coefficient of (setPoint - center)^j phi^e. */
+/* Returns the factor that converts the coefficient of l^j x^e / e to the coefficient of (setPoint - center)^j phi^e. */
 static sh_real unit_of_power(const sh_parameters *p, int i, int j)
 {
     const int e = sh_power_of_phi(p->rls.symmetric, i);
@@ -189,8 +189,8 @@ static void add(column_list *list, const sh_parameters *p, int kind, int i, int 
     list->size += 1;
 }
 
-/* The columns of the spring are the first ones; behind them are the others with their own filters. The columns of
- * friction are the last ones before the inertia. See change.c.
+/* Lists first the columns of the spring, and behind them the other columns with their own filters. The columns of
+ * friction are the last columns before the inertia, as change.c requires.
  */
 static void list_columns(const sh_parameters *p, column_list *list)
 {
@@ -281,13 +281,13 @@ static sh_real beyond_knee(sh_real x, sh_real k, int symmetric)
     return is_left ? sh_fmin(x + sh_fabs(k), 0) : sh_fmax(x - k, 0);
 }
 
-/* Whether the column is the widest dead zone: it may be a knee, and then has a slope. */
+/* Returns 1 for the widest dead zone. Only this dead zone may be a knee, and a knee changes the slope of the curve. */
 static int may_be_knee(const sh_column *column)
 {
     return column->kind == SH_COLUMN_DEAD_ZONE && column->i == SH_WIDTHS - 1;
 }
 
-/* Signal of a column before its filter. Sets its slope over phi if it has one. */
+/* Returns the input of a column's filter. Sets the derivative of this input by phi if the derivative is not 0. */
 static sh_real signal_of(const sh_column *column, const sh_parameters *p, const sh_joint_point *at,
                          sh_real *slope)
 {
@@ -327,7 +327,7 @@ static sh_real signal_of(const sh_column *column, const sh_parameters *p, const 
     }
 }
 
-/* Sets x^e / e and x^(e - 1) / range, for x = phi / range; for e = 0 it is 1 and 0. */
+/* Sets power = x^e / e and slope = x^(e - 1) / range for x = phi / range. For e = 0, power is 1, and slope is 0. */
 static void set_powers(sh_joint_point *point, const sh_parameters *p, sh_real set_point)
 {
     const int symmetric = p->rls.symmetric;
@@ -353,7 +353,7 @@ static void set_powers(sh_joint_point *point, const sh_parameters *p, sh_real se
     }
 }
 
-/* Torque and stiffness of the curve rls.eta_0, (21) and (23). */
+/* Computes torque and stiffness of the curve rls.eta_0, (21) and (23). */
 static void set_nominal(sh_joint_point *point, const sh_parameters *p, sh_real set_point)
 {
     const int n = p->rls.n, m = p->rls.m;
@@ -399,8 +399,8 @@ void sh_joint_point_at(sh_joint_point *point, const sh_columns *columns, const s
     }
 }
 
-/* 1 if x may be on the other side of the place where the slope changes. The place of a knee is known to 2 % of the
- * range. The place of a dead zone that may be a knee is known to a factor of 2.
+/* Returns 1 if x is near a change of the slope, so that x may be on the other side. The deformation at a knee is known
+ * to 2 % of the range. The half width of a dead zone that may be a knee is known to a factor of 2.
  */
 static int is_beside(const sh_column *column, const sh_parameters *p, sh_real x)
 {
@@ -450,13 +450,13 @@ void sh_columns_move_stops(sh_real *stop, const sh_parameters *p, sh_real change
 
 /* ---- the row ----------------------------------------------------------------------------- */
 
-/* H x + T^2/12 s^2 H x of a signal that is not smooth, detail 2. */
+/* Returns H x + T^2/12 s^2 H x for a signal x that is not smooth (detail 2). */
 static sh_real as_if_smooth(const sh_parameters *p, const sh_filtered *f, int i)
 {
     return f->output[i] + p->samplePeriod * p->samplePeriod / 12 * f->second[i];
 }
 
-/* Filtered torque in y: -gamma tau_f, or the measured torque of the spring [N.m]. */
+/* Returns the filtered torque in y: -gamma tau_f, or the measured torque of the spring [N.m]. */
 static sh_real torque_in_y(const sh_parameters *p, const sh_filtered *f)
 {
     return sh_is_measured(p) ? f->output[SH_FILTER_TORQUE]
@@ -476,8 +476,8 @@ sh_real sh_columns_y(const sh_parameters *p, const sh_filtered *f)
     return torque_in_y(p, f) + (sh_is_measured(p) ? 0 : motor_torque(p, f, SH_FILTER_THETA));
 }
 
-/* sigma S + gamma^2 (D_theta S' + B S''): the error of y by the error S of theta, which is signal i. Returns 0 while
- * sigma is not known (detail 13).
+/* Returns sigma S + gamma^2 (D_theta S' + B S''), the error of y by the encoder error S of theta, which is signal i.
+ * Returns 0 while sigma is not known (detail 13).
  */
 static sh_real encoder_error(const sh_regression_state *state, const sh_parameters *p, int i)
 {
@@ -487,7 +487,7 @@ static sh_real encoder_error(const sh_regression_state *state, const sh_paramete
     return state->stiffness_known ? sh_limited(error, SH_LARGEST_ENCODER_ERROR) : 0;
 }
 
-/* Entry of a column without a filter of its own. The factor `prior` is still missing. */
+/* Returns the entry of a column without a filter of its own, before the multiplication by the factor `prior`. */
 static sh_real entry_of(const sh_regression_state *state, const sh_parameters *p,
                         const sh_column *column)
 {
@@ -540,9 +540,9 @@ void sh_columns_row(const sh_regression_state *state, const sh_parameters *p, sh
     x[size + SH_RIGHT_Y] = sh_columns_y(p, f) - f->output[SH_FILTER_NOMINAL];
 }
 
-/* nu = lambda epsilon / (1 - lambda c s'), s' = slope: noise of the torque. This noise is taken out of the column, and
- * so out of the prediction. What is left has the variance (1 - lambda) N_tau, which is also its covariance with the
- * torque in y.
+/* nu = lambda epsilon / (1 - lambda c s'), s' = slope: estimated noise of the torque. The function removes this noise
+ * from the column, and thus from the prediction. The remaining noise has the variance (1 - lambda) N_tau. This number
+ * is also the covariance of the remaining noise and the torque in y.
  */
 sh_real sh_columns_remove_noise(const sh_regression_state *state, const sh_row_noise *noise,
                                 sh_real epsilon, sh_real *x, sh_column_noise *left)

@@ -28,7 +28,9 @@ static int check_filtered_regression(const sh_parameters *p, sh_violation *viola
     return 0;
 }
 
-/* Largest |phi|: there the highest power e is 32 times as large as at range.phi. At least twice range.phi. */
+/* Returns the largest |phi|, at which the power phi^e is 32 times as large as at range.phi, for the highest exponent e.
+ * The largest |phi| is at least twice range.phi.
+ */
 static sh_real largest_deformation_filtered_regression(const sh_parameters *p)
 {
     const int e = sh_power_of_phi(p->rls.symmetric, p->rls.n - 1);
@@ -45,8 +47,9 @@ static sh_variances variances_at(const sh_regression_state *state, const sh_para
                                   state->columns.spring);
 }
 
-/* Errors of phi make a value too small by the share v sum V_phi/R (point 5). Errors that repeat with the position
- * change it by at most two std deviations. By more, they would also move columns of the motor out of their priors.
+/* Returns the variance of torque or stiffness by errors of phi, which make the value too small by the share v sum
+ * V_phi/R (point 5). Errors that repeat with the position change the value by at most two std deviations. A larger
+ * change would also move coefficients of the motor far from their priors.
  *
  * value     times v sum 1/R
  * variance  of the value
@@ -60,10 +63,10 @@ static sh_real of_errors(const sh_regression_state *state, const sh_parameters *
            sh_fmin(sh_square(harmonics * value), sh_square(SH_LARGEST_PULL) * variance);
 }
 
-/* tau_e = F' beta, (21), and sigma = dF' beta, (23), with the curve rls.eta_0. Both variances are c' P c plus
- * (s_g d(c' beta)/dg)^2 with the gain g of the torque (point 8), plus what errors of phi may change (point 5). The
- * variance of sigma also has what is not known beside a knee [(N.m/rad)2] (point 6). The share by which errors of phi
- * change sigma is used for the torque, too, which is an approximation. Returns d sigma / dg.
+/* tau_e = F' beta, (21), and sigma = dF' beta, (23), with the curve rls.eta_0. Both variances are the sum of c' P c,
+ * (s_g d(c' beta)/dg)^2 for the gain g of the torque (point 8), and a term for errors of phi (point 5). The variance of
+ * sigma also contains the uncertainty of the slope near a knee [(N.m/rad)2] (point 6). As an approximation, the share
+ * by which errors of phi change sigma is also used for the torque. Returns d sigma / dg.
  */
 static sh_real evaluate_at(const sh_regression_state *state, const sh_parameters *p,
                            const sh_joint_point *at, const sh_variances *variances, sh_real knees,
@@ -89,7 +92,7 @@ static sh_real evaluate_at(const sh_regression_state *state, const sh_parameters
     return stiffness_per_gain;
 }
 
-/* The same for a deformation at rest. */
+/* Evaluates torque and stiffness at a constant deformation, without hysteresis. */
 static void evaluate_at_rest(const sh_regression_state *state, const sh_parameters *p, sh_real phi,
                              sh_real set_point, sh_joint_point *at, sh_point *point)
 {
@@ -113,7 +116,7 @@ static void evaluate_filtered_regression(const sh_estimator *estimator, const sh
 
 /* ---- report ------------------------------------------------------------------------------- */
 
-/* From the coefficients of powers of s - c to those of powers of the set-point s, by Horner's scheme. */
+/* Converts the coefficients of powers of s - c to coefficients of powers of the set-point s, by Horner's scheme. */
 static void shift_set_point(sh_estimate *estimate, sh_real c)
 {
     int i, j, k;
@@ -129,7 +132,7 @@ static void shift_set_point(sh_estimate *estimate, sh_real c)
     }
 }
 
-/* Sets the coefficients eta, and adds up those of each kind of column, sum [size: SH_COLUMN_KINDS]. */
+/* Sets the coefficients eta, and adds up the coefficients of each kind of column in sum [size: SH_COLUMN_KINDS]. */
 static void read_coefficients(const sh_regression_state *state, const sh_parameters *p,
                               const sh_joint_point *at, sh_real *sum, sh_estimate *estimate)
 {
@@ -158,9 +161,9 @@ static void read_coefficients(const sh_regression_state *state, const sh_paramet
     }
 }
 
-/* The reason why the estimate is not confident. The misfit widens sigma_std, and has its own limit for few blocks
- * only: then the columns that may explain it have not all been tried. With N blocks, c' P c counts 1 + 10/N times,
- * because few blocks hardly show whether the model holds.
+/* Returns the reason why the estimate is not confident. The misfit increases sigma_std. For few blocks, the misfit also
+ * has a limit of its own, because some columns that may explain the misfit have not been tried. With N blocks, c' P c
+ * is multiplied by 1 + 10/N, because few blocks hardly show whether the model holds.
  */
 static int doubt_of(const sh_regression_state *state, const sh_parameters *p,
                     const sh_estimate *estimate)
@@ -197,7 +200,7 @@ static int doubt_of(const sh_regression_state *state, const sh_parameters *p,
     return doubt;
 }
 
-/* Sets the outputs that follow from the coefficients, and from the stiffness in estimate. */
+/* Sets the outputs that are computed from the coefficients and from the stiffness in estimate. */
 static void report_coefficients(sh_regression_state *state, const sh_parameters *p,
                                 const sh_joint_point *at, sh_estimate *estimate)
 {
@@ -219,8 +222,9 @@ static void report_coefficients(sh_regression_state *state, const sh_parameters 
     estimate->hysteresis_hat = sum[SH_COLUMN_HYSTERESIS];
 }
 
-/* Sets all outputs, and what the next row depends on. If a number overflows, returns 0 and sets no output. The
- * variances at a point are as much work as a row, so they are computed once for a row (detail 16).
+/* Sets all outputs, and the members of the state that the next row needs. If a number overflows, returns 0 and sets no
+ * output. The variances at a point take as much time as a row, so the variances are computed once for a row (detail
+ * 16).
  *
  * settled  whether the filters have settled
  * news     SH_NEW_*
@@ -267,7 +271,7 @@ static int report(sh_regression_state *state, const sh_parameters *p, sh_joint_p
     return 1;
 }
 
-/* Sets the uncertainty at phi = 0; torque and stiffness there are those of the curve rls.eta_0. */
+/* Starts the state, and sets the uncertainty of the start estimate, which is the curve rls.eta_0, at phi = 0. */
 static void start_filtered_regression(sh_estimator *estimator, const sh_parameters *p,
                                       sh_estimate *estimate)
 {
@@ -294,7 +298,9 @@ static void start_filtered_regression(sh_estimator *estimator, const sh_paramete
 
 /* ---- tick --------------------------------------------------------------------------------- */
 
-/* 1 if the signals of a sample are so small that nothing overflows; 0 also if one is not a number. */
+/* Returns 1 if the signals of a sample are so small that no computation overflows. Returns 0 also if a signal is not a
+ * number.
+ */
 static int are_acceptable(const sh_joint_point *at, sh_real y, const sh_columns *columns)
 {
     return sh_sum_of_products(at->F, at->F, columns->filtered) <= SH_LARGE &&
@@ -304,7 +310,7 @@ static int are_acceptable(const sh_joint_point *at, sh_real y, const sh_columns 
            sh_square(y) <= SH_LARGE;
 }
 
-/* Adds a share of the signals behind the filters. */
+/* Adds the filtered signals, times `share`, to the mean of the row. */
 static void add_signals(sh_mean *mean, const sh_filters *filters, const sh_filtered *now,
                         int columns, sh_real share)
 {
@@ -321,7 +327,7 @@ static void add_signals(sh_mean *mean, const sh_filters *filters, const sh_filte
     }
 }
 
-/* Adds a sample to those before. Returns 1 if a row is complete: then their mean makes it (detail 16). */
+/* Adds a sample to the mean of the present row. Returns 1 if the row is complete (detail 16). */
 static int take_sample(sh_regression_state *state, const sh_parameters *p, const sh_filtered *now)
 {
     sh_signals *signals = &state->signals;
@@ -352,8 +358,8 @@ static sh_real weight_of(const sh_row_noise *noise, const sh_real *x, int count)
     return w > 0 && w * sh_sum_of_products(x, x, count) <= SH_LARGE ? w : 0;
 }
 
-/* epsilon = y - x' beta, without its share that is noise of the torque. This noise is also removed from the column of
- * the motor's torque (detail 14).
+/* Returns the prediction error epsilon = y - x' beta without the noise of the torque. This noise is also removed from
+ * the column of the motor torque (detail 14).
  */
 static sh_real predict(const sh_regression_state *state, const sh_row_noise *noise, sh_real *x,
                        sh_column_noise *left)
@@ -364,7 +370,9 @@ static sh_real predict(const sh_regression_state *state, const sh_row_noise *noi
     return epsilon - sh_columns_remove_noise(state, noise, epsilon, x, left);
 }
 
-/* Updates what is noise in columns: of b (detail 7), of the torque (14), and of the spring (point 5). */
+/* Updates the sums that describe the noise in the columns: of b (detail 7), of the torque (detail 14), and of the
+ * spring (point 5).
+ */
 static void update_noise(sh_regression_state *state, const sh_parameters *p,
                          const sh_column_noise *left, sh_real w)
 {
@@ -384,11 +392,12 @@ static void update_noise(sh_regression_state *state, const sh_parameters *p,
     now->spread += Q * now->weight * now->weight;
     next->spread += Q * next->weight * next->weight;
     next->surplus += N * next->weight;
-    /* Also without new rounding: what could not be removed before may be removed now. */
+    /* The noise is removed also if N is 0, because noise of earlier rows may not have been removed completely. */
     sh_posterior_remove(now, N * now->weight, p->prior.B);
 }
 
-/* Takes a complete row, steps 3 to 5 of the tick. Returns 0 if its numbers are too large. */
+/* Updates the posterior with a complete row: steps 3 to 5 of the tick. Returns 0 if a number of the row is too large.
+ */
 static int use_row(sh_regression_state *state, const sh_parameters *p, const sh_row_noise *noise)
 {
     const int size = state->columns.size;
@@ -409,7 +418,7 @@ static int use_row(sh_regression_state *state, const sh_parameters *p, const sh_
     return 1;
 }
 
-/* Steps that a refit makes in a step of the row. */
+/* Returns the number of steps that a refit makes in one step of a row. */
 static int steps_of_refit(const sh_signals *signals)
 {
     const int K = signals->decimation;
@@ -422,9 +431,9 @@ static int steps_of_refit(const sh_signals *signals)
     return steps;
 }
 
-/* Step 0 to 2 behind the row. A block that the row fills is taken in these steps, and in step 0 behind the next row.
- * Else a refit goes on, with more steps if rows are long, so that its time does not depend on the rows. Returns
- * SH_NEW_*.
+/* Makes step 0, 1 or 2 after a row. If the row completes a block, these steps, and step 0 after the next row, take the
+ * block. Otherwise, the refit makes its next steps: several if rows are long, so that the duration of a refit does not
+ * depend on the length of the rows. Returns SH_NEW_*.
  */
 static int advance_block(sh_regression_state *state, const sh_parameters *p, int step)
 {
@@ -445,8 +454,8 @@ static int advance_block(sh_regression_state *state, const sh_parameters *p, int
     return news;
 }
 
-/* Further changes by a row, in steps 0 to 6. A step changes at most one triangular matrix, but up to four where a
- * refit goes on in long rows. A step also copies matrices when a change is adopted. Returns SH_NEW_*.
+/* Updates the state by the last row, in steps 0 to 6. A step changes at most one triangular matrix, or up to four in a
+ * refit with long rows. When a change is adopted, a step also copies matrices. Returns SH_NEW_*.
  */
 static int take_step(sh_regression_state *state, const sh_parameters *p, int step)
 {
@@ -467,13 +476,15 @@ static int take_step(sh_regression_state *state, const sh_parameters *p, int ste
     return 0;
 }
 
-/* The first step that belongs to this tick since the row, if all steps are spread over so many ticks. */
+/* Returns the first step that belongs to a tick after the row, if all steps are distributed over `ticks` ticks. */
 static int first_step(int tick, int ticks)
 {
     return (SH_ROW_STEPS * tick + ticks - 1) / ticks;
 }
 
-/* The steps are spread over the ticks until the next row. Returns SH_NEW_*. */
+/* Makes the steps of the last row that belong to this tick: all steps are distributed over the ticks until the next
+ * row. Returns SH_NEW_*.
+ */
 static int take_steps(sh_regression_state *state, const sh_parameters *p)
 {
     const int ticks = state->signals.decimation > 1 ? state->signals.decimation - 1 : 1;
@@ -490,8 +501,8 @@ static int take_steps(sh_regression_state *state, const sh_parameters *p)
     return news;
 }
 
-/* Waits until the filters have settled. A block that is not full is dropped: it would contain rows from both
- * sides of the gap.
+/* Waits until the filters have settled. A block that is not full is dropped, because the block would contain rows from
+ * both sides of the gap.
  */
 static void wait_until_settled(sh_regression_state *state)
 {
@@ -501,7 +512,8 @@ static void wait_until_settled(sh_regression_state *state)
     }
 }
 
-/* Resets the quantities that made the last row too large, so that they do not spoil the next row. Returns 0. */
+/* Resets the quantities that made the numbers of the last row too large, so that the next row is acceptable. Returns 0.
+ */
 static int refuse(sh_regression_state *state, const sh_history *before)
 {
     state->signals.begun = 0; /* the filters start again, so their old state does not matter */
@@ -546,7 +558,7 @@ static int tick_filtered_regression(sh_estimator *estimator, const sh_parameters
             return refuse(state, &before);
         }
     }
-    /* This is done at each tick as long as there are no rows, also after a gap. */
+    /* The variances are computed at each tick until the first row is complete, also after a gap. */
     news = complete || (settled && state->row.w > 0) ? 0 : SH_NEW_VARIANCES;
     if (!complete || state->signals.decimation == 1) {
         news |= take_steps(state, p); /* 6. Estimate, data, misfit, choice of columns. */

@@ -1,5 +1,6 @@
-/* Method FilteredRegression: checks whether a state can be its own. A condition about one member is an `if`, so that
- * an analyser knows the member behind the condition. Numbers that only have a range are in a table.
+/* Checks whether a state, for example from a file, is a possible state of the method FilteredRegression. A condition
+ * about one member is an `if`, so that a static analyser knows the range of the member after the condition. Numbers
+ * that only have a range are in a table.
  */
 #include <string.h>
 
@@ -7,7 +8,9 @@
 #include "method.h"
 #include "regression.h"
 
-/* Columns never change after the start. */
+/* Returns 1 if the columns are equal to the columns that the parameters give at the start. The columns never change
+ * later.
+ */
 static int are_columns(const sh_columns *columns, const sh_parameters *p)
 {
     const int count = sh_columns_count(p);
@@ -36,7 +39,7 @@ static int are_columns(const sh_columns *columns, const sh_parameters *p)
     return 1;
 }
 
-/* A posterior has a choice of the columns. */
+/* Returns 1 if the indices of the columns that a posterior uses are in their range. */
 static int is_choice(const sh_regression_state *state, const sh_posterior *posterior)
 {
     const int size = state->columns.size;
@@ -51,7 +54,7 @@ static int is_choice(const sh_regression_state *state, const sh_posterior *poste
     return 1;
 }
 
-/* Sizes, places in what is done step by step, and flags. */
+/* Returns 1 if all sizes, step counters and flags are in their ranges. */
 static int are_numbers(const sh_regression_state *state)
 {
     const sh_blocks *blocks = &state->blocks;

@@ -5,7 +5,7 @@
 #include "constants.h"
 #include "pair.h"
 
-/* Place at which row i begins in U. */
+/* Returns the index in U at which row i begins. */
 static int row_offset(int size, int i)
 {
     return i * (size - 1 + SH_RIGHT_SIDES) - i * (i - 1) / 2;
@@ -71,13 +71,15 @@ void sh_information_restart(sh_information *a, int count, sh_real precision)
     }
 }
 
-/* The rest of a sample: the variance v of its error, and 1 / v. With both, each row waits for only one addition. */
+/* Variance v of the error of a sample after some rows have taken their part of the sample, and 1 / v. With both
+ * numbers, each row waits for only one addition.
+ */
 typedef struct {
     sh_real variance, weight;
 } sample_left;
 
-/* Adds the rest of a sample after the rows before, with the entry x, to an entry of D. Returns the gain for the row
- * of U. If nothing changes, x becomes 0.
+/* Updates an entry of D by the entry x of a sample that the earlier rows have reduced. Returns the gain for the row of
+ * U. If D does not change, x becomes 0.
  *
  *     D_i += x_i^2 / v ,   v += x_i^2 / D_i before ,   gain = x_i / (D_i before v) .
  */
@@ -108,7 +110,9 @@ static void combine(sh_real *restrict row, sh_real *restrict x, int count, sh_re
     }
 }
 
-/* The same for two rows, one after the other. So each entry of the sample is read and written once for both. */
+/* Combines the sample with two rows, one after the other. Each entry of the sample is then read and written only once
+ * for both rows.
+ */
 static void combine_two(sh_real *restrict first, sh_real *restrict second, sh_real *restrict x,
                         int count, const sh_real *xi, const sh_real *gain)
 {
@@ -144,7 +148,7 @@ sh_real sh_information_predict(const sh_information *a, sh_real *x, sh_real w)
     return sh_fmin(left.weight, w); /* 1 / (1 / w) may be rounded up */
 }
 
-/* Gentleman, for each row i, with the sample x and its weight w that the rows before left. */
+/* Gentleman's update of each row i by the sample x and its weight w, after the rows above have reduced both. */
 sh_real sh_information_take_rows(sh_information *a, int first, int end, sh_real *x, sh_real w)
 {
     const int size = a->size, begin = first < size ? first : size, rows = end < size ? end : size;
@@ -219,7 +223,7 @@ void sh_information_solve(const sh_information *a, const sh_last_row *last, sh_r
 
         row -= count + SH_RIGHT_SIDES;
         sh_scalar_products(row + 1, beta + i + 2, per_gain + i + 2, count - 1, &y, &gain);
-        /* The newest entry comes last: the sums need not wait for it. */
+        /* The product with the newest entry is subtracted last, so that the other sums need not wait for this entry. */
         beta[i] = row[count + SH_RIGHT_Y] - y - row[0] * beta[i + 1];
         per_gain[i] = row[count + SH_RIGHT_GAIN] - gain - row[0] * per_gain[i + 1];
     }
@@ -237,7 +241,9 @@ static void subtract(sh_real *restrict a, sh_real *restrict b, const sh_real *re
     }
 }
 
-/* v = U'^-1 c: the variance is the sum of v_i^2 / D_i. In single precision, v^2 may overflow where D is as large. */
+/* With v = U'^-1 c, the variance is the sum of v_i^2 / D_i. In single precision, v^2 may overflow if D is very large,
+ * so v is divided by D first.
+ */
 sh_variances sh_information_variances(const sh_information *a, sh_real last_D, sh_real *first,
                                       sh_real *second)
 {
@@ -292,7 +298,7 @@ void sh_information_forget(sh_information *a, sh_real factor, sh_real least)
     a->squares *= factor;
 }
 
-/* row += D along [1, U_i, z_i], of row i of U from its diagonal on. Returns D along^2. */
+/* row += D along [1, U_i, z_i], where [1, U_i, z_i] is row i of U from the diagonal on. Returns D along^2. */
 static sh_real add_row(sh_real *row, const sh_real *of_U, int count, sh_real D, sh_real along)
 {
     const sh_real scaled = D * along;
@@ -313,8 +319,8 @@ static sh_real weight_of_drift(sh_real vAv, sh_real c)
     return vAv > 0 && isfinite(vAv) ? -variance / (1 + variance * vAv) : 0;
 }
 
-/* In terms of the information A = U' D U, the step is A -= A v v' A c / (1 + c v' A v): a sample of
- * negative weight with the regressor v' A.
+/* With the information A = U' D U, the drift is A -= A v v' A c / (1 + c v' A v): an update by a sample of negative
+ * weight with the regressor v' A.
  */
 sh_real sh_information_drift(sh_information *a, const sh_real *v, sh_real c)
 {

@@ -1,5 +1,5 @@
-/* Misfit (point 7): errors that no column explains. Blocks of samples show the misfit, and data that contradict the
- * model are forgotten.
+/* Misfit (point 7): prediction errors that no column explains. The misfit is computed from blocks of samples. Data that
+ * contradict the model are forgotten.
  */
 #include <string.h>
 
@@ -44,8 +44,8 @@ static void forget_blocks(sh_blocks *blocks, sh_real factor)
     blocks->count *= factor;
 }
 
-/* White noise has the variance sum h^2 w / (sum h w)^2 times the share that H leaves. The rounding of theta adds the
- * variance of (gamma^2 B theta'')_f.
+/* Returns the variance of the mean row of a block. White noise has the variance sum h^2 w / (sum h w)^2 times the share
+ * that H leaves. The rounding of theta adds the variance of (gamma^2 B theta'')_f.
  */
 static sh_real variance_of(const sh_regression_state *state, const sh_parameters *p)
 {
@@ -72,8 +72,8 @@ static void count_block(sh_regression_state *state)
     }
 }
 
-/* Takes the mean row of a block [size: SH_MAX_ROW], or only predicts it. Returns the square of the error of its
- * prediction over the variance of this error [1].
+/* Updates the information by the mean row of a block [size: SH_MAX_ROW], or only predicts the row. Returns the squared
+ * prediction error divided by its variance [1].
  */
 static sh_real take_block(sh_information *a, const sh_real *mean, sh_real w, int only_predicts)
 {
@@ -84,9 +84,9 @@ static sh_real take_block(sh_information *a, const sh_real *mean, sh_real w, int
     return sh_limited(error * sh_square(x[a->size + SH_RIGHT_Y]), SH_LARGE);
 }
 
-/* Mean row sum h w x / sum h w. The hypothesis of a change takes this row first, as it may begin anew before this
- * block. The hypothesis does not take its first block: if this block is evidence, the spring changes in it. If this
- * block is no evidence, the hypothesis begins anew after the block.
+/* The mean row of a block is sum h w x / sum h w. The hypothesis of a change takes the mean row first, because the
+ * hypothesis may begin anew before this block. The hypothesis does not take its first block. If the first block is
+ * evidence, the spring changes in this block; otherwise, the hypothesis begins anew after the block.
  */
 void sh_blocks_end(sh_regression_state *state, const sh_parameters *p, int step)
 {
@@ -146,14 +146,14 @@ void sh_blocks_take(sh_regression_state *state)
 
 /* ---- the variance factor, detail 8 ------------------------------------------------------- */
 
-/* Largest sum of squares of N errors that is chance: N t, t = 1 + 3 sqrt(2 / N) */
+/* Returns the largest sum of N squared errors that may be due to chance: N t, t = 1 + 3 sqrt(2 / N) */
 static sh_real chance(sh_real N)
 {
     return N + SH_CHANCE * sh_sqrt(2 * N);
 }
 
-/* Sum of the squared errors of blocks over their variances, with coefficients beta. The blocks contain a share of
- * the prior, 0..1.
+/* Returns the sum of the squared errors of the blocks, divided by their variances, with coefficients beta. The matrix
+ * of the blocks also contains the share `prior` of the prior, 0..1, which is subtracted.
  */
 static sh_real squares_of(const sh_information *blocks, const sh_real *beta, sh_real prior)
 {
@@ -161,8 +161,9 @@ static sh_real squares_of(const sh_information *blocks, const sh_real *beta, sh_
            prior * sh_sum_of_products(beta, beta, blocks->size);
 }
 
-/* Sets 0 also while friction or the curve drifts: the recent blocks do not contain this drift. The prior counts whole,
- * although it fades in what the blocks excite: there beta' beta is small beside the squares of 20 blocks.
+/* Sets recent_misfit. While friction or the curve drifts, recent_misfit is 0, because the recent blocks do not contain
+ * this drift. The prior is subtracted completely, although forgetting reduces the prior. This error is small, because
+ * beta' beta is small compared with the squares of 20 blocks.
  */
 void sh_misfit_judge_recent(sh_regression_state *state, const sh_parameters *p)
 {
@@ -177,7 +178,7 @@ void sh_misfit_judge_recent(sh_regression_state *state, const sh_parameters *p)
     }
 }
 
-/* Whether there are enough blocks to forget data, and to allow for the squares that the parameters explain. */
+/* Returns 1 if there are enough blocks to forget data, and to subtract half the number of parameters in q. */
 static int has_many_blocks(const sh_regression_state *state)
 {
     const sh_real N = state->blocks.count;
@@ -189,8 +190,9 @@ static int has_many_blocks(const sh_regression_state *state)
  *
  *     kappa^2 = max(q, q_recent, 1 + (q - t) max(1, N / 5))  if q > t, else max(1, q, q_recent) .
  *
- * A misfit is a function of the state and repeats with the motion. So its part q - t does not average
- * out over N blocks. With few blocks, q is their sum over N; with too few, the last judgement stays.
+ * A misfit is a function of the state and repeats with the motion, so the part q - t does not average out over N
+ * blocks. With few blocks, q is the sum divided by N. With fewer than SH_FEW_BLOCKS blocks, misfit and variance factor
+ * do not change.
  */
 void sh_misfit_judge(sh_regression_state *state, const sh_parameters *p)
 {
@@ -219,7 +221,9 @@ void sh_misfit_judge(sh_regression_state *state, const sh_parameters *p)
 
 /* ---- drift of friction, detail 10 -------------------------------------------------------- */
 
-/* Judges by the residuals of both regressions whether friction drifts; not while the second tests other friction. */
+/* Decides by the residuals of both regressions whether friction drifts. There is no decision while the second
+ * regression tests the hypothesis of other friction.
+ */
 static void judge_drift(sh_regression_state *state)
 {
     const sh_blocks *blocks = &state->blocks;
@@ -266,9 +270,9 @@ void sh_friction_drift(sh_regression_state *state, sh_real time, int step)
 
 /* ---- forgetting, details 9 and 11 -------------------------------------------------------- */
 
-/* Forgets data of so much time of motion [s]. Data are forgotten faster while the misfit is over three times its
- * usual value, but not faster than the recent blocks. If these blocks agree by themselves, the joint has changed:
- * then data are forgotten at least five times as fast.
+/* Forgets data, for a motion of the duration `moving` [s]. Data are forgotten faster while the misfit is more than
+ * three times the usual misfit, but not faster than the recent blocks. If the recent blocks do not contradict each
+ * other, the joint has changed. In this case, data are forgotten at least five times as fast.
  */
 static void forget_data(sh_regression_state *state, const sh_parameters *p, sh_real moving)
 {
@@ -289,8 +293,9 @@ static void forget_data(sh_regression_state *state, const sh_parameters *p, sh_r
     state->noise.gain *= factor;
 }
 
-/* P += drift time / (v'v + R) v v'. Here v are the columns of the curve in the last row, and R is the variance of this
- * row. The errors of phi are a part of the information along v, and are lost with this information.
+/* P += drift time / (v'v + R) v v'. The vector v contains the columns of the curve in the last row, and R is the
+ * variance of this row. The drift reduces the information along v, and the sum `weights` for errors of phi by the same
+ * factor.
  */
 static void let_curve_drift(sh_regression_state *state, const sh_parameters *p, sh_real time)
 {
@@ -310,8 +315,8 @@ static void let_curve_drift(sh_regression_state *state, const sh_parameters *p, 
     }
 }
 
-/* Only the time of blocks counts: nothing is forgotten at rest. With a short memory, the number of blocks
- * must grow first.
+/* The time of forgetting is the duration of the blocks, so no data are forgotten at rest. Data are forgotten only after
+ * there are many blocks.
  */
 void sh_forget(sh_regression_state *state, const sh_parameters *p, sh_real time)
 {

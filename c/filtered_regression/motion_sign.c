@@ -17,7 +17,7 @@ void sh_motion_sign_step(sh_motion_sign *motion, sh_real position, sh_real count
     const sh_real before = motion->change;
     const sh_real run = motion->waiting + 1; /* samples since the last change */
     const int moved = sh_fabs(change) >= count / 2 && sh_fabs(change) > 0;
-    /* Without a new count, the motor is not faster than one count in this time. */
+    /* Without a new encoder count, the velocity is at most one count divided by the time since the last count. */
     const sh_real velocity = sh_fmax(moved ? sh_fabs(change) : 0, count) / run;
     const sh_real way = change > 0 ? 1 : -1;
 
@@ -32,9 +32,8 @@ void sh_motion_sign_step(sh_motion_sign *motion, sh_real position, sh_real count
     motion->sign = motion->direction;
     motion->unknown = velocity < slow || before == 0 ? 1 : 0;
     if (change * before < 0) {
-        /* A slow motor turned in the middle of the run: the sign corrects what was reported since
-         * the last count. A fast motor turned within this sample, where its velocity, taken as
-         * linear in time, was zero.
+        /* A slow motor reversed in the middle between two counts: the sign corrects the signs that were reported since
+         * the last count. A fast motor reversed within this sample, at the time when a linear velocity crosses zero.
          */
         if (run > 1) {
             motion->sign -= motion->given;

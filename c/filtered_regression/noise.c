@@ -1,9 +1,11 @@
-/* The variance of a row, and the part of the row that is only noise. */
+/* The variance of a row, and the noise in the columns of a row. */
 #include "constants.h"
 #include "regression.h"
 #include "state_variable_filter.h"
 
-/* Sum over both encoders [rad2]: the rounding of phi has a twelfth of it as its variance. */
+/* Returns the sum of the squared counts of both encoders [rad2]. The variance of the rounding of phi is a twelfth of
+ * this sum.
+ */
 static sh_real counts_squared(const sh_signals *signals)
 {
     return sh_square(signals->count) + sh_square(signals->count_q);
@@ -49,18 +51,19 @@ sh_real sh_noise_watch_theta(sh_regression_state *state, const sh_parameters *p)
 /* K R = (sigma^2 (count^2 + count_q^2)/12 + (gamma s_tau)^2) (1 + 0.3 (X - 1))
  *       + 16/(3 w T) gamma^2 (tau_C^2 + P_CC) u_f^2
  *
- * White noise counts as before the filter (point 1), as the mean of K samples. A wrong sign of friction in one
- * sample leaves the filter as its impulse response h, in many samples. So the variance of friction is divided by T
- * integral of h^2 = 3/16 w T.
+ * White noise counts as before the filter (point 1), as the mean of K samples. Behind the filter, a wrong sign of
+ * friction in one sample is the impulse response h, which changes many samples. The variance of friction is therefore
+ * divided by T integral of h^2 = 3/16 w T.
  *
- * Errors that do not average out (point 5): R is the variance of the independent part, and c of the part that stays.
- * Then n samples have the information 1 / (R / n + c), so the n-th one has the variance
+ * Errors that do not average out (point 5): R is the variance of the independent part of the error, and c is the
+ * variance of the constant part. In this case, n samples have the information 1 / (R / n + c), so the n-th sample has
+ * the variance
  *
  *     R (1 + c n / R)^2 .
  *
  * After the filter: N_tau = G_0 (gamma s_tau)^2 by the torque, N_theta by theta, with the noise of rounding at least,
- * and N_C by friction of unknown sign. X is N_tau + N_theta over what it would be with rounding alone; jitter of the
- * sample times makes it larger. lambda = N_tau / (N_tau + N_theta + N_C), detail 14.
+ * and N_C by friction of unknown sign. X is N_tau + N_theta divided by the value of this sum with rounding alone.
+ * Jitter of the sample times increases X. lambda = N_tau / (N_tau + N_theta + N_C), detail 14.
  */
 sh_row_noise sh_noise_of_row(const sh_regression_state *state, const sh_parameters *p)
 {
@@ -98,7 +101,7 @@ sh_real sh_noise_of_deformation(const sh_signals *signals)
 }
 
 /* N R = (gamma^2 B prior.B)^2 G V. V is the mean over samples of the squared fourth difference / 70. A sample in which
- * the position changes adds 0.056 (count^2 / 12) to this mean.
+ * the position changes adds 0.056 (count^2 / 12) to the mean V.
  */
 sh_real sh_noise_of_inertia(const sh_regression_state *state, const sh_parameters *p)
 {
@@ -109,8 +112,9 @@ sh_real sh_noise_of_inertia(const sh_regression_state *state, const sh_parameter
     return sh_is_measured(p) ? 0 : sh_square(p->prior.B) * inertial_noise(signals, p) * V;
 }
 
-/* epsilon^2 > 25 (x' P x + N_tau + (gamma^2 B)^2 G count^2/12 + gamma^2 (tau_C^2 + P_CC) u_f^2). Here x
- * contains only the columns of the equation: a bias, or another effect of real joints, would hide a slow motion.
+/* epsilon^2 > 25 (x' P x + N_tau + (gamma^2 B)^2 G count^2/12 + gamma^2 (tau_C^2 + P_CC) u_f^2). In this condition, x
+ * contains only the columns of the equation of motion. A bias, or another effect of real joints, would hide a slow
+ * motion.
  */
 int sh_noise_contradicts_rest(sh_regression_state *state, const sh_parameters *p,
                               const sh_row_noise *noise)

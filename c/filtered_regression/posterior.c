@@ -1,5 +1,5 @@
-/* Posterior of the coefficients: their prior, and the data weighted by the misfit. The noise in columns is
- * removed from the information (details 7 and 14).
+/* Posterior of the coefficients, computed from the prior and from the data, which are weighted by the misfit. The noise
+ * in columns is removed from the information (details 7 and 14).
  */
 #include <string.h>
 
@@ -32,8 +32,8 @@ sh_real sh_posterior_take(sh_posterior *posterior, const sh_real *x, int size, s
     return sh_information_take(&posterior->information, row, weight) / weight;
 }
 
-/* D_b -= N, and so for the right-hand sides s = D_b z: s_y += N / prior.B, because N is biased towards
- * b = -1, which is beta = -1 / prior.B (detail 7).
+/* D_b -= N removes the information N, which is noise. The right-hand side s = D_b z of y changes by s_y += N / prior.B,
+ * because N is biased towards b = -1, which is beta = -1 / prior.B (detail 7).
  */
 void sh_posterior_remove(sh_posterior *posterior, sh_real information, sh_real prior_B)
 {
@@ -54,8 +54,8 @@ void sh_posterior_remove(sh_posterior *posterior, sh_real information, sh_real p
     posterior->removed += N;
 }
 
-/* The last row with the weight that the data about b have after the removal:
- * D = 1 + I^2 / (I + N + Q), with I = D_b - 1 and Q = spread + (0.05 N / prior.B)^2 (detail 7).
+/* Returns the last row with the weight of the data about b after the removal of noise: D = 1 + I^2 / (I + N + Q), with
+ * I = D_b - 1 and Q = spread + (0.05 N / prior.B)^2 (detail 7).
  */
 static sh_last_row weighed_last(const sh_posterior *posterior, sh_real prior_B)
 {
@@ -73,8 +73,8 @@ static sh_last_row weighed_last(const sh_posterior *posterior, sh_real prior_B)
     return last;
 }
 
-/* D = 1 + I + N is the information about the coefficient if all others are estimated; N of it is noise. A sample
- * of negative weight reduces the information of the data to I^2 / (I + N + Q), Q = (0.2 G)^2 (detail 14).
+/* D = 1 + I + N is the information about the coefficient if all others are estimated, and N is the part by noise. A
+ * sample of negative weight reduces the information of the data to I^2 / (I + N + Q), Q = (0.2 G)^2 (detail 14).
  */
 void sh_posterior_remove_noise(sh_posterior *posterior, sh_real prior_B, int i,
                                const sh_column_noise *noise)

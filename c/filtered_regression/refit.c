@@ -1,17 +1,18 @@
-/* Refits: how the misfit, and the choice of columns, act on past samples in bounded time (detail 6). A row of
- * the data with its weight is a sample for another triangle: so a new posterior is computed beside the present
- * one. A step takes a row of the data, beginning with the last, or two while the rows are short. A new row passes the
- * rows of the data from the first to the last. The new posterior also takes the rest of the new row after the rows
- * that have not been read. Every second refit is a trial of a group of columns, and its estimate is not used.
+/* Refits apply a new misfit, or a new choice of columns, to past samples in bounded time (detail 6). A refit computes a
+ * new posterior beside the present posterior: each row of the triangular matrix of the data, with its weight, is a
+ * sample for the new posterior. A step of the refit takes one row of this matrix, beginning with the last, or two rows
+ * while the rows are short. A new row of the regression updates the matrix from the first row to the last. The new
+ * posterior also takes the new row, after the unread rows of the matrix have reduced the row. Every second refit is a
+ * trial of a group of columns, and the estimate of a trial is not used.
  */
 #include <string.h>
 
 #include "constants.h"
 #include "regression.h"
 
-/* Place of column i; -1 if it is not used. Columns of the spring stand behind others: their variances then
- * need few rows of U. Behind them stand columns of the motor, whose information is changed or whose variance is
- * used. At the end stands the group that is tried.
+/* Returns the section 0..3 of the posterior that contains column i; -1 if the column is not used. Section 1 contains
+ * the columns of the spring, so that their variances need few rows of U. Section 2 contains columns of the motor, whose
+ * information is changed or whose variance is used. Section 3 contains the group of columns that is tried.
  */
 static int place_of(const sh_regression_state *state, const sh_parameters *p, int i)
 {
@@ -50,7 +51,9 @@ static int choose_columns(const sh_regression_state *state, const sh_parameters 
     return size;
 }
 
-/* The weight of the data is 1 / kappa^2. In a trial it is 1 / misfit, which is max(1, q, q_recent). */
+/* Starts a refit. The weight of the data is 1 / kappa^2. In a trial, the weight is 1 / misfit, where the misfit is
+ * max(1, q, q_recent).
+ */
 void sh_refit_begin(sh_regression_state *state, const sh_parameters *p)
 {
     sh_refit *refit = &state->refit;
@@ -112,7 +115,9 @@ static sh_real gain_of_evidence(const sh_regression_state *state)
     return gain;
 }
 
-/* A group is used above 3 + 0.05 N, and no longer below 0.025 N; knees above 3 + 0.01 N, and below 0.005 N. */
+/* With N blocks, a group is used above a log evidence of 3 + 0.05 N, and no longer below 0.025 N. For knees, the limits
+ * are 3 + 0.01 N and 0.005 N.
+ */
 static void decide_about_group(sh_regression_state *state)
 {
     sh_refit *refit = &state->refit;
@@ -129,7 +134,9 @@ static void decide_about_group(sh_regression_state *state)
     }
 }
 
-/* Details 7 and 14. The inertia comes first: its rounding would bias the other one. */
+/* Removes noise from the columns of the inertia (detail 7), and then of the motor torque (detail 14). In the other
+ * order, the rounding error in the column of the inertia would bias the column of the motor torque.
+ */
 static void remove_noise(sh_regression_state *state, const sh_parameters *p)
 {
     sh_posterior *posterior = &state->refit.posterior;
@@ -171,7 +178,7 @@ static void take_row(sh_regression_state *state)
     (void)sh_posterior_take(&refit->posterior, x, size, w);
 }
 
-/* Whether the posterior of the refit still takes rows: it is in use from step 1 on. */
+/* Returns 1 if the posterior of the refit still takes new rows. From step 1 on, this posterior is in use. */
 static int is_open(const sh_refit *refit)
 {
     return refit->step <= 1;
@@ -210,8 +217,8 @@ void sh_refit_take(sh_regression_state *state)
     }
 }
 
-/* Steps 0..15 of a refit after its rows. Friction drifts, and data are forgotten, before a refit that is no
- * trial. Returns SH_NEW_*.
+/* Steps 0..15 of a refit after its rows. The drift of friction and the forgetting of data come only before a refit that
+ * is no trial. Returns SH_NEW_*.
  */
 static int end_step(sh_regression_state *state, const sh_parameters *p, int step)
 {
@@ -237,7 +244,7 @@ static int end_step(sh_regression_state *state, const sh_parameters *p, int step
         sh_misfit_judge(state, p);
     } else if (step == 6) {
         set_friction_std(state, p);
-        /* The next refit is a trial after every one that changed the estimate. */
+        /* After every refit that changed the estimate, the next refit is a trial. */
         refit->trial =
             !is_trial && state->blocks.count >= SH_FIRST_TRIAL ? next_trial(state, p) : 0;
         refit->pause = 0;
@@ -253,12 +260,12 @@ static int end_step(sh_regression_state *state, const sh_parameters *p, int step
     return news;
 }
 
-/* The work before and after a refit is also spread over ticks. */
+/* Makes the next step of a refit. The work before and after a refit is also distributed over ticks. */
 int sh_refit_advance(sh_regression_state *state, const sh_parameters *p)
 {
     sh_refit *refit = &state->refit;
     const sh_real count = state->blocks.count;
-    /* Before there are enough blocks, a refit changes little. */
+    /* A refit changes the estimate only little before there are enough blocks. */
     const sh_real pause =
         count < SH_FIRST_TRIAL ? SH_FIRST_PAUSE : SH_REFIT_PAUSE * count * SH_BLOCK;
     int news = 0;

@@ -11,13 +11,13 @@ enum {
     SH_REFIT_STEPS = 16 /* number of steps of a refit after its rows */
 };
 
-/* What a step changes. The values may be added up. */
+/* Flags for the quantities that a step changes. The values may be added up. */
 enum {
     SH_NEW_COEFFICIENTS = 1,
     SH_NEW_VARIANCES = 2 /* variances at the point of this tick */
 };
 
-/* Positions of the joint, and the signals of the columns there, before the filter. */
+/* Positions of the joint, and the signals of the columns at these positions, before the filter. */
 typedef struct {
     sh_real theta, q, phi;      /* positions and deformation [rad] */
     sh_real x;                  /* phi / range.phi [1] */
@@ -70,7 +70,7 @@ enum {
     SH_COLUMN_KINDS
 };
 
-/* What a column is. */
+/* Flags for the properties of a column. */
 enum {
     SH_IS_CURVE = 1,   /* a part of the curve of the spring, which may drift */
     SH_IS_POWER = 2,   /* a power of the deformation: its coefficient is an eta */
@@ -86,40 +86,42 @@ typedef struct {
 
 extern const sh_column_kind sh_column_kinds[SH_COLUMN_KINDS];
 
-/* Whether the column is one of SH_IS_*, which may be added up. */
+/* Returns 1 if the column has one of the properties `what`: SH_IS_*, which may be added up. */
 static inline int sh_column_is(const sh_column *column, unsigned what)
 {
     return (sh_column_kinds[column->kind].is & what) != 0;
 }
 
-/* Whether the torque of the spring is measured or modelled, and not computed from the motor's. */
+/* Returns 1 if the torque of the spring is measured or modelled, and not computed from the motor torque. */
 int sh_is_measured(const sh_parameters *p);
 
-/* Whether a nominal curve rls.eta_0 is given. */
+/* Returns 1 if a nominal curve rls.eta_0 is given. */
 int sh_has_nominal_curve(const sh_parameters *p);
 
-/* Power e of phi that belongs to number i: 2 i + 1, or i if the torque is not symmetric. */
+/* Returns the exponent e of phi in basis function i: 2 i + 1, or i if the torque is not symmetric. */
 int sh_power_of_phi(int symmetric, int i);
 
-/* Number of columns for these parameters. May be larger than SH_MAX_COLUMNS. */
+/* Returns the number of columns for the parameters, which may be larger than SH_MAX_COLUMNS. */
 int sh_columns_count(const sh_parameters *p);
 
-/* The columns for these parameters; there must not be more than SH_MAX_COLUMNS. */
+/* Lists the columns for the parameters, at most SH_MAX_COLUMNS columns. */
 void sh_columns_start(sh_columns *columns, const sh_parameters *p);
 
-/* Place of the first column of a kind; -1 if there is none. */
+/* Returns the index of the first column of a kind; -1 if there is no such column. */
 int sh_columns_place(const sh_columns *columns, int kind);
 
-/* Whether column i can be told from the spring after the deformations so far. */
+/* Returns 1 if the deformations so far are large enough to distinguish column i from the spring. */
 int sh_column_is_distinct(const sh_regression_state *state, const sh_parameters *p, int i);
 
-/* Sets the point of positions [rad], set-point [1] and hysteresis [size: SH_WIDTHS], which is kept. */
+/* Sets the point from positions [rad] and set-point [1]. The point keeps the pointer `stop` to the states of hysteresis
+ * [size: SH_WIDTHS].
+ */
 void sh_joint_point_at(sh_joint_point *point, const sh_columns *columns, const sh_parameters *p,
                        sh_real theta, sh_real q, sh_real phi, sh_real set_point,
                        const sh_real *stop);
 
-/* Point 6: leaves out the slope of a dead zone that is a gap. Returns the variance of the slope beside a knee, because
- * the place of the knee is not known exactly [(N.m/rad)2].
+/* Point 6: sets the slope of a dead zone to 0 if the dead zone is a gap. Returns the variance of the slope near a knee
+ * [(N.m/rad)2], because the deformation at the knee is not known exactly.
  */
 sh_real sh_columns_judge_knees(const sh_columns *columns, const sh_parameters *p,
                                const sh_real *beta, sh_joint_point *at);
@@ -127,26 +129,28 @@ sh_real sh_columns_judge_knees(const sh_columns *columns, const sh_parameters *p
 /* Moves the stop operators of hysteresis [size: SH_WIDTHS] by a change of the deformation [rad]. */
 void sh_columns_move_stops(sh_real *stop, const sh_parameters *p, sh_real change);
 
-/* y [N.m] of filtered signals. */
+/* Returns y [N.m], computed from the filtered signals. */
 sh_real sh_columns_y(const sh_parameters *p, const sh_filtered *f);
 
-/* The row x [size: SH_MAX_ROW] by the mean of the filters: columns, then right-hand sides, of which the last is y
- * less the torque of the nominal curve.
+/* Computes the row x [size: SH_MAX_ROW] from the mean of the filtered signals: first the columns, then the right-hand
+ * sides. The last right-hand side is y minus the torque of the nominal curve.
  */
 void sh_columns_row(const sh_regression_state *state, const sh_parameters *p, sh_real *x);
 
-/* Detail 14: removes the noise that y contains, too, from the column of the motor's torque in x. The prediction error
- * of y is epsilon [N.m]. Sets the noise that is left, times R. Returns by how much the prediction of y grows [N.m].
+/* Detail 14: removes the noise of the motor torque, which y also contains, from the column of the motor torque in x.
+ * The prediction error of y is epsilon [N.m]. Sets `left` to the noise that remains, times R. Returns the resulting
+ * change of the prediction of y [N.m].
  */
 sh_real sh_columns_remove_noise(const sh_regression_state *state, const sh_row_noise *noise,
                                 sh_real epsilon, sh_real *x, sh_column_noise *left);
 
 /* ---- motion_sign.c: detail 3 ------------------------------------------------------------- */
 
-/* Starts at a position [rad]: the sign is unknown until the position changes. */
+/* Starts the direction of motion at a position [rad]. The sign of the velocity is unknown until the position changes.
+ */
 void sh_motion_sign_start(sh_motion_sign *motion, sh_real position);
 
-/* Takes the next position [rad].
+/* Updates the direction of motion by the next position [rad].
  *
  * count  smallest change that the encoder can show [rad], >= 0
  * slow   velocity below which the sign counts as unknown, times the sample period [rad], > 0
@@ -155,31 +159,33 @@ void sh_motion_sign_step(sh_motion_sign *motion, sh_real position, sh_real count
 
 /* ---- signals.c --------------------------------------------------------------------------- */
 
-/* Designs the filters; they start with the next sample. */
+/* Designs the filters, which start with the next sample. */
 void sh_signals_start(sh_signals *signals, sh_history *history, const sh_parameters *p);
 
 /* Lets the estimate wait until the filters have settled. */
 void sh_signals_unsettle(sh_signals *signals, sh_history *history);
 
-/* Takes a sample into the history and into all filters. Sets the positions of the joint, also after the filters. */
+/* Updates the history and all filters by a sample. Sets the positions of the joint before and after the filters. */
 void sh_signals_take(sh_regression_state *state, const sh_parameters *p, const sh_measurement *z,
                      sh_real set_point, sh_joint_point *at);
 
 /* ---- noise.c ----------------------------------------------------------------------------- */
 
-/* Variance of the noise of theta in the last sample by its fourth difference [rad2], of which it keeps the mean. */
+/* Returns the variance of the noise of theta in the last sample, from the fourth difference of theta [rad2]. The
+ * history keeps a mean of this variance.
+ */
 sh_real sh_noise_watch_theta(sh_regression_state *state, const sh_parameters *p);
 
-/* Detail 4: variance of a row, with the noise of theta as the last samples show it. */
+/* Detail 4: returns the variance of a row. The noise of theta is estimated from the last samples. */
 sh_row_noise sh_noise_of_row(const sh_regression_state *state, const sh_parameters *p);
 
-/* R times the information in a row that is only rounding: about sigma (point 5) [rad2], about b (detail 7)
- * [(N.m)2].
+/* Return R times the information of a row that is only rounding noise: about sigma (point 5) [rad2], and about b
+ * (detail 7) [(N.m)2].
  */
 sh_real sh_noise_of_deformation(const sh_signals *signals);
 sh_real sh_noise_of_inertia(const sh_regression_state *state, const sh_parameters *p);
 
-/* Whether the newest row shows that the motor was not at rest at the start (detail 12). */
+/* Returns 1 if the newest row shows that the motor was not at rest at the start (detail 12). */
 int sh_noise_contradicts_rest(sh_regression_state *state, const sh_parameters *p,
                               const sh_row_noise *noise);
 
@@ -187,24 +193,25 @@ int sh_noise_contradicts_rest(sh_regression_state *state, const sh_parameters *p
 
 void sh_posterior_copy(sh_posterior *to, const sh_posterior *from);
 
-/* Takes a row x: all columns [size: size], then the right-hand sides. The weight of the row is w times the weight of
- * the posterior. Returns 1 / (1 + rho), where rho is the variance of the prediction over the variance of the row.
+/* Updates the posterior by a row x: all columns [size: size], then the right-hand sides. The weight of the row is w
+ * times the weight of the posterior. Returns 1 / (1 + rho), where rho is the variance of the prediction divided by the
+ * variance of the row.
  */
 sh_real sh_posterior_take(sh_posterior *posterior, const sh_real *x, int size, sh_real w);
 
-/* Detail 7: adds information [1] about b that is only rounding, and removes as much as possible. The last column,
- * b, does not become less certain than its prior, prior_B > 0.
+/* Detail 7: counts information [1] about b that is only rounding noise, and removes as much of this noise as possible.
+ * The coefficient b of the last column does not become less certain than its prior, prior_B > 0.
  */
 void sh_posterior_remove(sh_posterior *posterior, sh_real information, sh_real prior_B);
 
-/* Detail 14: the same for the noise of all samples in its column i. */
+/* Detail 14: removes the noise of all samples from the information about column i of the posterior. */
 void sh_posterior_remove_noise(sh_posterior *posterior, sh_real prior_B, int i,
                                const sh_column_noise *noise);
 
-/* Sets beta and per_gain of all columns by the posterior; 0 for columns that are not used. */
+/* Sets beta and per_gain of all columns from the posterior; both are 0 for columns that are not used. */
 void sh_posterior_estimate(sh_regression_state *state, sh_real prior_B);
 
-/* Variances of two combinations [size: count] of the coefficients of the first columns of the data. */
+/* Returns the variances of two linear combinations [size: count] of the coefficients of the first columns. */
 sh_variances sh_posterior_variances(const sh_posterior *posterior, sh_real prior_B,
                                     const sh_real *first, const sh_real *second, int count);
 
@@ -212,7 +219,7 @@ sh_variances sh_posterior_variances(const sh_posterior *posterior, sh_real prior
 
 void sh_blocks_start(sh_regression_state *state);
 
-/* Detail 8: takes the last row into the present block. */
+/* Detail 8: adds the last row to the present block. */
 void sh_blocks_take(sh_regression_state *state);
 
 static inline int sh_block_is_full(const sh_blocks *blocks)
@@ -220,26 +227,29 @@ static inline int sh_block_is_full(const sh_blocks *blocks)
     return blocks->rows >= blocks->length;
 }
 
-/* Step 0..3 behind a row. Only if a block is full, one regression in each step takes the mean row of the block. */
+/* Makes step 0, 1, 2 or 3 after a row. If the block is full, each step updates one regression by the mean row of the
+ * block.
+ */
 void sh_blocks_end(sh_regression_state *state, const sh_parameters *p, int step);
 
-/* Leaves out the samples of the present block: they are not in sequence with the next samples. */
+/* Drops the samples of the present block if the next samples do not follow without a gap. */
 void sh_blocks_interrupt(sh_blocks *blocks);
 
-/* Detail 8: judges the recent blocks by the estimate beta; then sets misfit and variance_factor by all blocks. */
+/* Detail 8: the first function computes the misfit of the recent blocks with the estimate beta. The second function
+ * sets misfit and variance_factor from all blocks.
+ */
 void sh_misfit_judge_recent(sh_regression_state *state, const sh_parameters *p);
 void sh_misfit_judge(sh_regression_state *state, const sh_parameters *p);
 
-/* Process noise of a column: an even step sets its sample, and an odd step takes this sample, if there is one. */
+/* Adds process noise to a column: an even step prepares a sample, and an odd step takes the sample if there is one. */
 void sh_drift_step(sh_refit *refit, sh_information *a, int column, sh_real variance, int step);
 
-/* Step 0..7 of detail 10: lets friction drift for `time` [s]. Every second step takes the sample of the step before.
- * Friction drifts in the data, too, if the blocks contradict each other less with the drift.
+/* Makes step 0..7 of detail 10: lets friction drift for `time` [s]. Every second step takes the sample of the previous
+ * step. If the blocks contradict each other less with the drift, friction also drifts in the data.
  */
 void sh_friction_drift(sh_regression_state *state, sh_real time, int step);
 
-/* Details 9 and 11: forgets data that contradict the model, and lets the curve drift for `time` [s]
- * along the last row.
+/* Details 9 and 11: forgets data that contradict the model, and lets the curve drift for `time` [s] along the last row.
  */
 void sh_forget(sh_regression_state *state, const sh_parameters *p, sh_real time);
 
@@ -247,26 +257,26 @@ void sh_forget(sh_regression_state *state, const sh_parameters *p, sh_real time)
 
 void sh_change_start(sh_regression_state *state);
 
-/* Whether the hypothesis of a change begins anew before the block that it has just taken, and without this block. The
- * squared error of the block, over its variance, is `error` [1].
+/* Returns 1 if the hypothesis of a change begins anew before the last block, and without this block. The argument
+ * `error` is the squared error of the block, divided by its variance [1].
  */
 int sh_change_begins_anew(sh_regression_state *state, sh_real error);
 
-/* Compares the hypotheses by the squares of their errors over the variances in a block: as before, with another spring,
- * and with other friction.
+/* Compares three hypotheses by their squared errors in a block, divided by the variances: no change, another spring,
+ * and other friction.
  */
 void sh_change_judge(sh_regression_state *state, const sh_parameters *p, sh_real before,
                      sh_real spring, sh_real friction);
 
-/* Step 0..2 behind a row in which no block is taken. Gives friction the variance of its prior, if this hypothesis has
- * just begun. Returns 0 if there is nothing to do.
+/* Makes step 0, 1 or 2 after a row that does not complete a block. If the hypothesis of other friction has just begun,
+ * the columns of friction get the variance of their priors. Returns 0 if the step changes nothing.
  */
 int sh_change_widens_friction(sh_regression_state *state, int step);
 
-/* The misfit over its usual value [1]. */
+/* Returns the misfit divided by the usual misfit [1]. */
 sh_real sh_change_misfit(const sh_regression_state *state);
 
-/* Whether the present estimate is in doubt. */
+/* Returns 1 if the present estimate is in doubt because of a possible change of the joint. */
 int sh_change_is_likely(const sh_regression_state *state);
 
 /* ---- refit.c: detail 6 ------------------------------------------------------------------- */
@@ -274,17 +284,19 @@ int sh_change_is_likely(const sh_regression_state *state);
 /* Starts posterior and refit from the prior. */
 void sh_refit_start(sh_regression_state *state, const sh_parameters *p);
 
-/* Starts the refit again. Its trial stays. */
+/* Starts the refit again, with the same trial. */
 void sh_refit_begin(sh_regression_state *state, const sh_parameters *p);
 
-/* Takes the newest row into the data of all samples. */
+/* Updates the data of all samples by the newest row. */
 void sh_data_take(sh_regression_state *state);
 
-/* Takes the rest of the newest row after sh_data_take, if a refit is running. No row may be read in between. */
+/* Updates the posterior of a running refit by the part of the newest row that sh_data_take has left. Between the two
+ * calls, the refit must read no row.
+ */
 void sh_refit_take(sh_regression_state *state);
 
-/* Takes a row of the data of all samples, two where they are short, or does the next step at the end of a refit.
- * Returns SH_NEW_*.
+/* Makes one step of a refit: reads a row of the data of all samples, or two short rows, or does the next work after the
+ * last row. Returns SH_NEW_*.
  */
 int sh_refit_advance(sh_regression_state *state, const sh_parameters *p);
 

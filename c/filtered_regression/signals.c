@@ -6,8 +6,8 @@
 #include "regression.h"
 #include "state_variable_filter.h"
 
-/* W_c = sqrt(s_tau / (B |gamma| s_n)), s_n = count / sqrt(12), is where the noise of the torque and the
- * rounding of theta contribute equally to y; point 1. The filter is designed only for w T >= 1e-4.
+/* At W_c = sqrt(s_tau / (B |gamma| s_n)), s_n = count / sqrt(12), the noise of the torque and the rounding of theta
+ * contribute equally to y (point 1). The filter is designed only for w T >= 1e-4.
  */
 static sh_real bandwidth_of(const sh_parameters *p)
 {
@@ -22,7 +22,9 @@ static sh_real bandwidth_of(const sh_parameters *p)
         (sh_real)1e-4 / p->samplePeriod);
 }
 
-/* K = 2.5 / (w T), 1..8: rows of more samples would lose what the filter leaves. */
+/* Returns the number of samples of a row, K = 2.5 / (w T), 1..8. Rows of more samples would lose information behind the
+ * filter.
+ */
 static int decimation_of(const sh_parameters *p)
 {
     const sh_real wT = bandwidth_of(p) * p->samplePeriod;
@@ -58,7 +60,7 @@ void sh_signals_unsettle(sh_signals *signals, sh_history *history)
     history->settling = SH_FORGOTTEN / signals->design.w;
 }
 
-/* The deformation of a sample: its range, hysteresis, and how long it rests. */
+/* Updates the history by the deformation of a sample: range, hysteresis, and number of samples without a change. */
 static void take_deformation(sh_history *history, const sh_signals *signals, const sh_parameters *p,
                              sh_real phi)
 {
@@ -72,8 +74,8 @@ static void take_deformation(sh_history *history, const sh_signals *signals, con
     history->phi = phi;
 }
 
-/* The friction by load acts against the motion. Before the stiffness is known, the load is the last fitted y
- * (detail 13).
+/* Returns the load that causes friction, which is the torque of the spring. Before the stiffness is known, the load is
+ * the last fitted y (detail 13).
  */
 static sh_real load_of(const sh_regression_state *state, const sh_joint_point *at)
 {
@@ -82,7 +84,9 @@ static sh_real load_of(const sh_regression_state *state, const sh_joint_point *a
                : state->y;
 }
 
-/* Sets the inputs of the filters [size: SH_FILTERS]: at the time of the sample, or the mean since the last one. */
+/* Sets the inputs of the filters [size: SH_FILTERS]. An input is the value at the time of the sample, or the mean since
+ * the last sample.
+ */
 static void set_inputs(const sh_regression_state *state, const sh_parameters *p,
                        const sh_joint_point *at, sh_real torque, sh_real *x)
 {
@@ -102,8 +106,9 @@ static void set_inputs(const sh_regression_state *state, const sh_parameters *p,
     x[SH_FILTER_LOAD] = -sh_fabs(load_of(state, at)) * motion->sign;
 }
 
-/* The first sample. The motor is assumed to be at rest, at any torque (detail 12). So theta starts at the present
- * position. The signals of the equation start from zero, because the equation holds from now on.
+/* Starts the filters at the first sample. The motor is assumed to be at rest, at any torque (detail 12), so the filter
+ * of theta starts at the present position. The signals of the equation of motion start at zero, because the equation
+ * holds from this sample on.
  */
 static void begin_filters(sh_regression_state *state, const sh_parameters *p,
                           const sh_joint_point *at, sh_real torque)

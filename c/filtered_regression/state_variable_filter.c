@@ -2,8 +2,8 @@
 
 #include "constants.h"
 
-/* This limit is far below the resolution of any signal. A filter at rest would decay to far smaller numbers, with
- * which processors compute slowly.
+/* Limit far below the resolution of any signal. The state of a filter with a constant input would decay to far smaller
+ * numbers, with which processors compute slowly.
  */
 static const sh_real SMALL = (sh_real)1e-30;
 
@@ -44,8 +44,8 @@ void sh_filters_hold(sh_filters *filters, int i, sh_real mean)
     }
 }
 
-/* In the steady state of a ramp, the output of stage k is (k + 1) / (w T) samples behind the input. Deviations from
- * the steady state decay as in the filter without input.
+/* In the steady state of a ramp, the output of stage k is (k + 1) / (w T) samples behind the input. Deviations from the
+ * steady state decay in the same way as in a filter without input.
  */
 void sh_filters_step(sh_filters *restrict filters, const sh_filter_design *design, int first,
                      const sh_real *restrict x, int count)

@@ -1,4 +1,4 @@
-/* State-variable filter (point 2): low pass and derivatives of a sampled signal, without differentiating it,
+/* State-variable filter (point 2): low pass and derivatives of a sampled signal, without numerical differentiation,
  *
  *     H(s) = (w / (s + w))^3 ,  s H(s)  and  s^2 H(s) ,
  *
@@ -10,33 +10,35 @@
 
 #include "sigmahat.h"
 
-/* Filter with the corner frequency w [rad/s] and the sample period T [s]. w T >= 1e-4: below,
- * digits are lost.
+/* Filter with the corner frequency w [rad/s] and the sample period T [s]. For w T below 1e-4, the filter would lose
+ * digits.
  */
 sh_filter_design sh_state_variable_filter_design(sh_real w, sh_real T);
 
 /* Starts filter i for a signal that has always been `before` and jumps to x now. */
 void sh_filters_start(sh_filters *filters, int i, sh_real x, sh_real before);
 
-/* Gives filter i the mean of its signal until the next sample, if the signal is not linear between samples. Then
- * sh_filters_step follows, with this mean as x.
+/* Gives filter i the mean of the signal until the next sample, if the signal is not linear between samples. The next
+ * call must be sh_filters_step with this mean as x.
  */
 void sh_filters_hold(sh_filters *filters, int i, sh_real mean);
 
-/* Advances filters from the first one on by T, in which their signals go linearly to x [size: count]. */
+/* Advances `count` filters, beginning with filter `first`, by T. During T, the signals of the filters change linearly
+ * to x [size: count].
+ */
 void sh_filters_step(sh_filters *restrict filters, const sh_filter_design *design, int first,
                      const sh_real *restrict x, int count);
 
-/* Lets the first filters rest if they are nearly at rest: processors compute slowly with the numbers to which they
- * would decay.
+/* Sets the states of the first `count` filters to 0 if the states are nearly 0. Without this function, the states would
+ * decay to numbers with which processors compute slowly.
  */
 void sh_filters_rest(sh_filters *filters, int count);
 
-/* Sets the signals behind the filters. */
+/* Computes the output signals of the filters and their derivatives. */
 void sh_filters_read(const sh_filters *restrict filters, const sh_filter_design *design,
                      sh_filtered *restrict filtered);
 
-/* Window h = 16 x^2 (1 - x)^2 at row k of a block of so many rows; 1 for a row alone. */
+/* Returns the window h = 16 x^2 (1 - x)^2 at row k of a block of `rows` rows; 1 for a block of one row. */
 static inline sh_real sh_window(sh_real k, sh_real rows)
 {
     const sh_real x = (k + (sh_real)0.5) / rows;
@@ -44,8 +46,8 @@ static inline sh_real sh_window(sh_real k, sh_real rows)
     return 16 * (x * (1 - x)) * (x * (1 - x));
 }
 
-/* Shares of white noise that H [1] and s^2 H [1/s4] leave in the mean over rows of K samples under this window. A share
- * is the energy of the filtered window over the energy of the window.
+/* Computes the shares of white noise that H [1] and s^2 H [1/s4] leave in the windowed mean of rows of K samples. A
+ * share is the energy of the filtered window divided by the energy of the window.
  */
 void sh_state_variable_filter_noise(const sh_filter_design *design, sh_real rows, int K,
                                     sh_real *gain, sh_real *gain_second);

@@ -1,8 +1,7 @@
 /* sigmahat: the stiffness of a flexible robot joint, estimated on line from positions and torque.
  *
- * Equation numbers in c/ are from the paper "Robust Estimation of Variable Stiffness in Flexible
- * Joints" by Flacco, De Luca, Sardellitti and Tsagarakis, IROS 2011. One tick of the estimator is
- * Fig. 1 of the paper.
+ * Equation numbers in c/ are from the paper "Robust Estimation of Variable Stiffness in Flexible Joints" by Flacco, De
+ * Luca, Sardellitti and Tsagarakis, IROS 2011. One tick of the estimator is Fig. 1 of the paper.
  *
  *     sh_parameters p;
  *     sh_violation violation;
@@ -14,11 +13,11 @@
  *     every p.samplePeriod seconds:
  *         sh_estimator_tick(&estimator, &p, &measurement, &estimate);
  *
- * The caller owns every struct. The library allocates no memory, has no global variables, and does
- * no input or output. Any number of estimators can run in any number of threads. A function that
- * returns an int returns 0 if all is well.
+ * The caller provides the memory of every struct. The library allocates no memory, has no global variables, and does no
+ * input or output. Any number of estimators can run in any number of threads. A function that returns an int returns 0
+ * if there is no error.
  *
- * Names of parameters and signals are those of the variables of the FMU (modelDescription/).
+ * Parameters and signals have the same names as the variables of the FMU (modelDescription/).
  */
 #ifndef SIGMAHAT_H
 #define SIGMAHAT_H
@@ -82,7 +81,9 @@ enum {
     SH_RLS_CONSTANT_FACTOR = 3 /* constant a in (25) */
 };
 
-/* Why the estimate is not confident. If there are several reasons, the last one of this list is given. */
+/* Reasons why the estimate is not confident. If there are several reasons, the library reports the last one of this
+ * list.
+ */
 enum {
     SH_DOUBT_NONE = 1,           /* it is confident */
     SH_DOUBT_NO_CLAIM,           /* the method computes no uncertainty that contains all errors */
@@ -96,8 +97,8 @@ enum {
 };
 
 /* Largest orders of the polynomials (18) and (19), in the deformation and in the set-point. These orders determine
- * the size of sh_estimator. The compiler can be given smaller ones, as plain numbers. The sizes must be the same for
- * every file of the library, and every file that includes this header.
+ * the size of sh_estimator. Compiler options can define smaller orders, as plain numbers. The sizes must be the same
+ * for every file of the library, and every file that includes this header.
  */
 #ifndef SH_MAX_N
 #define SH_MAX_N 8
@@ -107,16 +108,16 @@ enum {
 #endif
 enum { SH_MAX_BASIS = SH_MAX_N * SH_MAX_M };
 
-/* Largest number of columns of the regression: those of the basis, and the others of columns.c. A
- * smaller one, given to the compiler, saves memory where priors of 0 remove columns. With the largest
- * orders, a second knee needs two columns less of others.
+/* Largest number of columns of the regression: the columns of the basis, and the other columns of columns.c. If priors
+ * of 0 remove columns, a smaller number as a compiler option saves memory. With the largest orders, a second knee fits
+ * only if two other columns are removed.
  */
 #ifndef SH_MAX_COLUMNS
 enum { SH_MAX_COLUMNS = SH_MAX_BASIS + 24 };
 #endif
 
-/* The linker knows this function by a name that contains the sizes above, as they are given to the compiler. So
- * it finds no function for a file that was compiled with other sizes than the library.
+/* For the linker, the name of this function contains the sizes above, as the compiler options define them. If a file
+ * was compiled with other sizes than the library, the linker finds no function.
  */
 #define sh_estimator_start SH_SIZED(sh_estimator_start, SH_REAL, SH_MAX_N, SH_MAX_M, SH_MAX_COLUMNS)
 #define SH_SIZED(name, real, n, m, columns) SH_JOINED(name, real, n, m, columns)
@@ -151,8 +152,8 @@ typedef struct {
     sh_real knee_2; /* a second one; 0: there is none */
 } sh_range_parameters;
 
-/* Std deviations of what is not known exactly, each 0..1e12. With 0, the quantity is exact, or there
- * is none of it. The scale K_0 of the stiffness is prior.tau_e / range.phi.
+/* Std deviations of quantities that are not known exactly, each 0..1e12. With 0, the quantity is known exactly, or the
+ * effect does not exist. The scale K_0 of the stiffness is prior.tau_e / range.phi.
  */
 typedef struct {
     sh_real tau_e;         /* of each coefficient of the torque, for phi and set-point in units of
@@ -181,9 +182,9 @@ typedef struct {
                                 [rad] */
 } sh_prior_parameters;
 
-/* Parameters. Those marked "fixed" must not change after sh_estimator_start. Every other one may
- * change between ticks, and has its effect from the next tick on. But the filters of FilteredRegression
- * stay as modality, motor.B, motor.gamma and noise.tau were at the start.
+/* Parameters of an estimator. Parameters marked "fixed" must not change after sh_estimator_start. Every other parameter
+ * may change between ticks, and the new value is used from the next tick on. But the filters of FilteredRegression are
+ * designed only at the start, from modality, motor.B, motor.gamma and noise.tau.
  */
 typedef struct {
     sh_real samplePeriod; /* T [s], >= 1e-9, fixed */
@@ -315,7 +316,7 @@ typedef struct {
     const char *range; /* the allowed values: ">= 1e-15 and < 2 / samplePeriod" */
 } sh_violation;
 
-/* State between ticks. The struct contains no pointer: copy it by assignment. */
+/* State of an estimator between ticks. The struct contains no pointer, so an assignment copies the struct. */
 typedef struct sh_estimator sh_estimator;
 
 /* Sets the parameters of the AwAS, section VI.A, which are the start values of the FMU. The orders are
@@ -323,20 +324,19 @@ typedef struct sh_estimator sh_estimator;
  */
 void sh_parameters_default(sh_parameters *p);
 
-/* Returns 0 if every parameter is in its range. Else returns 1 and describes in violation the first
- * one that is not; the strings in it are constants of the library.
+/* Returns 0 if every parameter is in its range. Otherwise, returns 1 and describes the first parameter outside its
+ * range in violation. The strings in violation are constants of the library.
  */
 int sh_parameters_check(const sh_parameters *p, sh_violation *violation);
 
-/* Largest |phi| [rad] for which the parameters are made. The stiffness at a larger deformation may
- * be wrong by much. Never less than range.phi, and infinite for a method that has no such limit.
+/* Returns the largest |phi| [rad] for which the parameters are suitable. At a larger deformation, the stiffness may be
+ * very wrong. The result is at least range.phi, and infinite for a method without such a limit.
  *
  * p  parameters that pass sh_parameters_check
  */
 sh_real sh_parameters_largest_deformation(const sh_parameters *p);
 
-/* Starts the estimator, and sets the estimate of the initial state: eta_0 at phi = 0 and
- * theta_c = 0.
+/* Starts the estimator, and sets the estimate of the initial state: eta_0 at phi = 0 and theta_c = 0.
  *
  * p  parameters that pass sh_parameters_check
  */
@@ -348,27 +348,26 @@ void sh_estimator_start(sh_estimator *estimator, const sh_parameters *p, sh_esti
  * z         the measurements of this tick
  * estimate  in: as the last tick, or sh_estimator_start, left it; out: the new estimate
  *
- * Returns 0, or 1 if the tick is skipped: a measurement is not finite or beyond
- * SH_LARGEST_MEASUREMENT, or the numbers overflow. A skipped tick is counted and sets estimate->valid
- * to 0. Nothing else changes in the estimate, and nothing in the state unless the numbers overflow.
- * The first good sample after such a gap is treated by the method:
+ * Returns 0, or 1 if the tick is skipped: a measurement is not finite or beyond SH_LARGEST_MEASUREMENT, or the numbers
+ * overflow. A skipped tick is counted and sets estimate->valid to 0. The other members of the estimate do not change.
+ * The state changes only if the numbers overflow. After such a gap, the first good sample depends on the method:
  *
- * SH_METHOD_PAPER2011 filters over the time that has passed. If the gap is shorter than 2 / K_I,
- * the residual integrates over it as over one long sample. After a longer gap the residual starts
- * from its last value. With SH_MODALITY_RESIDUAL the regression then learns nothing, a = 0, until
- * this value is forgotten, ten time constants 1 / K_I later.
+ * SH_METHOD_PAPER2011 advances its filters over the whole gap. If the gap is shorter than 2 / K_I, the residual
+ * integrates over the gap as over one long sample. After a longer gap, the residual starts from its last value. With
+ * SH_MODALITY_RESIDUAL, the regression then does not change (a = 0) for ten time constants 1 / K_I, until the effect of
+ * this value has decayed.
  *
- * SH_METHOD_FILTERED_REGRESSION starts its filters again and learns nothing for
- * 12 / w, where w is the corner frequency of its filters, at most regression.bandwidth.
- * This method does the same after a change of the modality.
+ * SH_METHOD_FILTERED_REGRESSION starts its filters again, and does not change its regression for 12 / w. The corner
+ * frequency w of its filters is at most regression.bandwidth. After a change of the modality, this method also starts
+ * its filters again.
  */
 int sh_estimator_tick(sh_estimator *estimator, const sh_parameters *p, const sh_measurement *z,
                       sh_estimate *estimate);
 
-/* Evaluates the present estimate at any deformation, (21) and (23). Nothing is learned, and the
- * estimator does not change. A tick gives the same numbers for its own phi and setPoint. But with
- * SH_METHOD_FILTERED_REGRESSION the standard deviations of a tick may belong to the deformation of the last
- * row. This is up to regression.decimation samples, or 2.5 / w, before; w is the corner frequency of the filters.
+/* Evaluates the present estimate at any deformation, (21) and (23). The estimator does not change. A tick computes the
+ * same numbers for its own phi and setPoint. But with SH_METHOD_FILTERED_REGRESSION, the standard deviations of a tick
+ * may belong to the deformation of the last row. The last row is up to regression.decimation samples, or 2.5 / w,
+ * older; w is the corner frequency of the filters.
  *
  * p         parameters that pass sh_parameters_check; the fixed ones as they were at the start
  * phi       deformation [rad]
@@ -380,10 +379,10 @@ int sh_estimator_tick(sh_estimator *estimator, const sh_parameters *p, const sh_
 int sh_estimator_evaluate(const sh_estimator *estimator, const sh_parameters *p, sh_real phi,
                           sh_real setPoint, sh_point *point);
 
-/* Checks a state that comes from elsewhere, as from a file. Its sizes, places and choices must be
- * such as sh_estimator_start and sh_estimator_tick make with these parameters. Then a
- * tick reads and writes nothing beyond the state, and ends. The check does not show whether the
- * other numbers are the ones that were saved. For that, save a checksum.
+/* Checks a state from an external source, for example a file. Sizes, indices and flags of the state must be possible
+ * after sh_estimator_start and sh_estimator_tick with these parameters. With such a state, a tick reads and writes no
+ * memory outside the state, and ends. The check does not show whether the other numbers are correct. To detect wrong
+ * numbers, save a checksum with the state.
  *
  * p  parameters, each in its range; the fixed ones as they were at the start
  *
@@ -391,7 +390,7 @@ int sh_estimator_evaluate(const sh_estimator *estimator, const sh_parameters *p,
  */
 int sh_estimator_check(const sh_estimator *estimator, const sh_parameters *p);
 
-/* Definition of sh_estimator, so that you can declare a variable of this type. */
+/* Definition of the struct sh_estimator, so that you can declare a variable of this type. */
 #include "sigmahat_state.h"
 
 #ifdef __cplusplus

@@ -1,15 +1,13 @@
 /* The state of an estimator from one tick to the next: a struct for each block of c/.
  *
- * Nothing here is for users, who include sigmahat.h: with every version these structs may change.
- * This header is installed, because the caller provides the memory for the structs. Members named
- * `work` have no meaning between two calls.
+ * Users include only sigmahat.h, because the structs of this header may change with every version. This header is
+ * installed, because the caller provides the memory for the structs. Members named `work` have no meaning between two
+ * calls.
  */
 #ifndef SIGMAHAT_STATE_H
 #define SIGMAHAT_STATE_H
 
-/* Method Paper2011: ud_factor.h, least_squares.h, kinematic_kalman.h, torque_residual.h,
- * paper2011.c
- */
+/* Method Paper2011: ud_factor.h, least_squares.h, kinematic_kalman.h, torque_residual.h, paper2011.c */
 
 enum {
     SH_MAX_PARAMETERS = SH_MAX_BASIS,
@@ -136,7 +134,9 @@ typedef struct {
     sh_column column[SH_MAX_COLUMNS];
 } sh_columns;
 
-/* Signals of the filters. Those before the nominal torque start as if they had always been the same, others at 0. */
+/* Signals of the filters. The signals before SH_FILTER_NOMINAL start as if they had always been constant; all other
+ * signals start at 0.
+ */
 enum {
     SH_FILTER_THETA,
     SH_FILTER_PHI,     /* deformation */
@@ -152,8 +152,8 @@ enum {
     SH_MAX_FILTERS = SH_FILTERS + SH_MAX_COLUMNS
 };
 
-/* All filters, each in the unit of its signal. Each number stands side by side for all of them, so that compilers
- * compute with several at once.
+/* States of all filters, each in the unit of its signal. The same state of all filters is one array, so that compilers
+ * can process several filters at the same time.
  */
 typedef struct {
     sh_real input[SH_MAX_FILTERS]; /* last sample */
@@ -181,7 +181,7 @@ typedef struct {
     sh_real theta_before[5]; /* the last positions, for differences [rad] */
 } sh_signals;
 
-/* Data that a gap in the samples does not reset. A refused sample does not change these data. */
+/* Data of the past that a gap in the samples does not reset. A rejected sample does not change these data. */
 typedef struct {
     sh_real stop[SH_WIDTHS];       /* states of the stop operators of hysteresis [rad] */
     sh_real phi, phi_min, phi_max; /* deformation: last, least and largest [rad] */
@@ -202,7 +202,7 @@ typedef struct {
     sh_real output[SH_MAX_COLUMNS]; /* outputs of the filters of the columns */
 } sh_mean;
 
-/* The last row. The steps that take it are spread over the ticks until the next one. */
+/* The last row. The steps that process this row are distributed over the ticks until the next row. */
 typedef struct {
     int tick;              /* ticks since the row, up to the number in which its steps are done */
     sh_real x[SH_MAX_ROW]; /* columns, then right-hand sides */
@@ -213,15 +213,17 @@ typedef struct {
     sh_real epsilon, rho;  /* error of the prediction [N.m], its variance over 1/w [1] */
 } sh_row;
 
-/* The noise of the motor's torque is also in the column that is computed from this torque. These are the terms that
- * the noise adds to the normal equation of the coefficient of that column.
+/* Effect of the torque noise in the column that is computed from the motor torque. The members are the terms that this
+ * noise adds to the normal equation of the coefficient.
  */
 typedef struct {
     sh_real information; /* [1] */
     sh_real gain;        /* part in the right-hand side SH_RIGHT_GAIN [1] */
 } sh_column_noise;
 
-/* Prior and data, which are weighted by the misfit, in the order of its own columns. */
+/* Posterior from the prior and the data, which are weighted by the misfit. A posterior has its own order of the
+ * columns.
+ */
 typedef struct {
     sh_information information;
     short column[SH_MAX_COLUMNS]; /* which column of the data each of its own is */
@@ -275,9 +277,7 @@ typedef struct {
     sh_posterior posterior;
     int unread; /* rows of the data, the first ones, that have not been read */
     int step;   /* next one of what a refit does behind the rows */
-    /* Sample for the next step, and its weight: what the data left of the newest row, or process
-     * noise of friction.
-     */
+    /* Sample for the next step, and its weight: what the data left of the newest row, or process noise of friction. */
     sh_real x[SH_MAX_ROW], w;
     int trial; /* group that the refit tries, in its last steps of the next one; 0: none, it changes
                   the estimate */

@@ -2,12 +2,12 @@
 
 #include "real_math.h"
 
-/* Far below any velocity [rad/s] and lag [rad], and far above the numbers that processors compute
- * slowly with, to which both would decay at rest.
+/* Limit far below any velocity [rad/s] and lag [rad]. At rest, both would decay to still smaller numbers, with which
+ * processors compute slowly.
  */
 static const sh_real AT_REST = (sh_real)1e-30;
 
-/* R at a velocity, (11) [rad2]; V_min for an encoder without quantisation, with either weighting. */
+/* Returns the measurement variance R at a velocity, (11) [rad2]; V_min for an encoder without quantisation. */
 static sh_real measurement_variance(const sh_filter_parameters *filter, sh_real x_dot, sh_real w_s)
 {
     const sh_real speed = sh_fabs(x_dot);
@@ -17,7 +17,7 @@ static sh_real measurement_variance(const sh_filter_parameters *filter, sh_real 
         return filter->V_min;
     }
     relative = filter->weighting == SH_WEIGHTING_NORMALIZED ? speed / w_s : speed * w_s;
-    /* (11). If exp overflows to infinity, R is V_min, which is right. */
+    /* (11). If exp overflows to infinity, R is V_min, which is correct. */
     return (filter->V_max - filter->V_min) / (1 + sh_exp((relative - 1) * filter->alpha)) +
            filter->V_min;
 }
@@ -66,7 +66,7 @@ void sh_kinematic_kalman_step(sh_kinematic_kalman *kalman, const sh_filter_param
         kalman->lag = 0;
         kalman->x_dot = 0;
     }
-    /* This is P11 - P11^2/S. The subtraction would lose digits if P11 >> R. */
+    /* P11 (R / S) is equal to P11 - P11^2/S, but the subtraction would lose digits if P11 >> R. */
     kalman->P11 = P11 * (R / S);
     kalman->P12 = P12 * (R / S);
     kalman->P22 = sh_fmax(P22 - P12 * (P12 / S), 0); /* the difference may be below by rounding */

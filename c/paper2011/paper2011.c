@@ -17,8 +17,8 @@ static int check_paper2011(const sh_parameters *p, sh_violation *violation)
     return 0;
 }
 
-/* P of the recursion times this unit is a covariance [(N.m)2]. The unit is the variance of the torque's noise, as if
- * the noise were white, times the weight that (27) gives to every sample.
+/* Returns the unit of P: the matrix P of the recursion times this unit is a covariance [(N.m)2]. The unit is the
+ * variance of the torque noise, as if the noise were white, times the weight that (27) gives to every sample.
  */
 static sh_real unit_of_covariance(const sh_parameters *p)
 {
@@ -28,9 +28,8 @@ static sh_real unit_of_covariance(const sh_parameters *p)
     return noise * noise * (p->rls.kind == SH_RLS_ENHANCED ? p->rls.c : 1);
 }
 
-/* Torque and stiffness F' eta and dF' eta, (21) and (23). The variances contain the white noise of the
- * torque only: neither the errors of the motor data nor the lag of the residual. So the method is never
- * confident.
+/* Torque and stiffness F' eta and dF' eta, (21) and (23). The variances contain only the white noise of the torque, but
+ * not the errors of the motor data and the lag of the residual. The method Paper2011 is therefore never confident.
  *
  * variance  F' P F
  */
@@ -55,7 +54,7 @@ static void evaluate_paper2011(const sh_estimator *estimator, const sh_parameter
     evaluate_regressors(state, p, F, dF, sh_ud_factor_variance(&state->rls.P, F), point);
 }
 
-/* Sets what follows from the recursion but torque and stiffness. */
+/* Sets the outputs that are computed from the recursion, except torque and stiffness. */
 static void report_paper2011(const sh_paper2011_state *state, const sh_parameters *p,
                              const sh_point *point, sh_estimate *estimate)
 {
@@ -115,9 +114,9 @@ static sh_real track(sh_paper2011_filters *state, const sh_parameters *p, const 
     if (p->deformation == SH_DEFORMATION_FILTERED) {
         sh_kinematic_kalman_step(q, &p->filter, z->q, dt, state->q_w_s);
     }
-    /* (8) integrates over a gap as over one long sample if the gap is short compared with 1 / K_I.
-     * After a longer gap the torque in between is unknown. Then r_e starts from its last value, which
-     * is wrong, and the regression waits until this value is forgotten.
+    /* If a gap is short compared with 1 / K_I, (8) integrates over the gap as over one long sample. After a longer gap,
+     * the torque within the gap is unknown. In this case, r_e starts from the last value, which is wrong, and the
+     * regression waits until the effect of this value has decayed.
      */
     state->settling -= dt;
     if (dt * p->residual.K_I < 2) {

@@ -1,5 +1,5 @@
-/* Method Paper2011: which states can be its own. All loops and places follow from the number of
- * parameters alone.
+/* Checks whether a state is a possible state of the method Paper2011. The number of parameters alone determines all
+ * loops and indices.
  */
 #include "method.h"
 

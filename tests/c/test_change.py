@@ -43,7 +43,9 @@ def step(factor: float, at: float = AT) -> Callable[[Array], Array]:
 )
 def test_a_step_of_the_stiffness_is_followed(c: Library, frequency: float, factor: float) -> None:
     """GIVEN a stiffness that changes at 15 s, THEN this is detected. The estimate is hardly ever
-    confident and wrong by 20 %. At the end it is right and confident, with the same motor."""
+    confident and wrong by 20 %. At the end, the estimate is right and confident, and the motor data
+    have not changed.
+    """
     joint = Joint(
         duration=30.0, frequency=frequency, amplitude=0.8 / frequency, stiffness=step(factor)
     )
@@ -79,10 +81,10 @@ def test_samples_of_the_changed_spring_do_not_spoil_the_motor(
 
 
 def test_a_hypothesis_that_began_before_the_change_begins_anew(c: Library) -> None:
-    """GIVEN noise that is a little evidence just before the change (of 40 seeds six).
+    """GIVEN noise that gives a little evidence just before the change (6 of 40 seeds).
 
-    The hypothesis has learned the old spring. The hypothesis must not take the contradiction for
-    another motor.
+    At the change, the hypothesis already contains data of the old spring. The hypothesis must not
+    take the contradiction for another motor.
     """
     stiffness = step(2.0, AT + 0.02)
     joint = Joint(duration=22.0, frequency=0.5, amplitude=1.6, stiffness=stiffness, seed=37)
@@ -96,7 +98,9 @@ def test_a_hypothesis_that_began_before_the_change_begins_anew(c: Library) -> No
 @pytest.mark.parametrize("factor", [2.0, 0.5, 1.3])
 @pytest.mark.parametrize("inertia", [0.05, 0.2])
 def test_a_change_under_a_free_load_is_followed(c: Library, inertia: float, factor: float) -> None:
-    """GIVEN motor data that are known to 3 %, THEN they tell the change from another inertia."""
+    """GIVEN motor data that are known to 3 %, THEN a change of the spring differs from another
+    inertia.
+    """
     joint = FreeLoad(inertia=inertia, stiffness=step(factor))
     found = Estimator(c, {**SETTINGS, "prior.B": 0.03}).run(joint.measurements())
     error = np.abs(found["sigma"] / joint.sigma - 1)

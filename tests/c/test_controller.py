@@ -53,8 +53,8 @@ def test_a_processor_computes_what_the_host_computes(
         for t in (HOST, target)
     )
     assert 0 < np.count_nonzero(here["valid"] == 0) < 30
-    # Torque and stiffness of FilteredRegression are sums of up to 44 terms that nearly cancel. So
-    # they are less exact than the other outputs, and so are their coefficients.
+    # Torque and stiffness of FilteredRegression are sums of up to 44 terms that nearly cancel.
+    # These sums and their coefficients are therefore less exact than the other outputs.
     terms = 10 if configuration in REGRESSION else 1
     for name in here.dtype.names or ():
         factor = 2 * terms if name in ("eta", "tau_e", "sigma") else terms
@@ -119,7 +119,7 @@ def test_smaller_sizes_cost_what_the_page_says(
 ) -> None:
     """The table of seven joints in docs/controller.md. Another compiler may differ a little.
 
-    Parameters that need more memory than there is are refused.
+    The library rejects parameters that need more memory than it has.
     """
     sizes = (f"SH_MAX_N={n}", f"SH_MAX_M={m}", f"SH_MAX_COLUMNS={columns}")
     tree = cross_build("examples/controller", TARGETS["Cortex-M4F"], "float", folder, sizes)

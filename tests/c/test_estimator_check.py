@@ -86,7 +86,7 @@ def damage(part: Any, member: str, place: int, value: float) -> None:
 
 @pytest.mark.parametrize("member", [*LIMITS, *OTHERS])
 def test_a_damaged_member_is_found(c: Library, member: str) -> None:
-    """An integer is outside of its range, at any of its places."""
+    """GIVEN an integer outside its range, at any place of the state, THEN the check fails."""
     for place, value in product(range(6), (-(2**15), -2, 65, 2**15 - 1)):
         e = Estimator(c, CONFIGURED)
         damage(e.state.method.regression, member, place, value)

@@ -1,6 +1,6 @@
 """Least squares in the information form: what test_regression_oracle.py does not see.
 
-All its other numbers are in outputs of ticks, which that test compares.
+All other numbers appear in outputs of ticks, which test_regression_oracle.py compares.
 """
 
 from typing import Any

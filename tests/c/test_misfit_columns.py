@@ -55,7 +55,7 @@ def test_each_misfit_is_estimated(c: Library, output: str, way: int, gamma: floa
 
 @pytest.mark.parametrize("scale", [1.0, 2.0])
 def test_an_eccentric_encoder_of_the_link_is_estimated(c: Library, scale: float) -> None:
-    """GIVEN priors of a spring that is as stiff, or half as stiff as expected."""
+    """GIVEN a spring that is as stiff as its prior, or half as stiff."""
     estimator = Estimator(c, {**SETTINGS, "prior.tau_e": scale * SETTINGS["prior.tau_e"]})
     found = estimator.run(MisfitJoint(eccentric=8e-4).measurements())
     std = math.hypot(accuracy(estimator, "SIN_Q"), accuracy(estimator, "COS_Q")) / STIFFNESS

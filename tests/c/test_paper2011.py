@@ -54,7 +54,7 @@ def test_at_rest_the_velocity_becomes_zero_and_never_denormal(c: Library) -> Non
 
 
 def test_missing_samples_do_not_disturb_the_filter(c: Library) -> None:
-    """On a ramp: the next step gets the time since the last sample."""
+    """GIVEN a lost sample on a ramp, THEN the next step uses the time since the last sample."""
     p = c.new("sh_filter_parameters", **SETTINGS)
     kalman = c.new("sh_kinematic_kalman")
     c.lib.sh_kinematic_kalman_start(kalman, p, 0.0)

@@ -32,7 +32,7 @@ def test_the_table_in_c_is_made_from_the_list(tmp_path: Path) -> None:
 
 
 def fields(c: Library, struct: Any, prefix: str = "") -> Iterator[str]:
-    """The names of the numbers in a struct, with those of the structs around them."""
+    """Dotted names of the numbers in a struct, with the names of the enclosing structs."""
     for name, field in struct.fields:
         if field.type.kind == "struct":
             yield from fields(c, field.type, f"{prefix}{name}.")
@@ -52,7 +52,7 @@ def test_a_struct_has_the_fields_of_the_list(
 
 
 def test_start_values_and_ranges_are_those_of_the_list(c: Library, listed: list[Any]) -> None:
-    """A limit is accepted, and values beyond it are refused."""
+    """The check accepts the limit of each parameter, and rejects values outside the limit."""
     for variable in (v for v in listed if v.causality == "parameter"):
         p: Any = c.parameters({})  # it owns the memory of its parts
         value = attrgetter(variable.name)(p)

@@ -2,8 +2,8 @@
 
 The second implementation, in helpers/dense_*.py, has dense matrices in extended precision and the
 filters of scipy.
-Decisions compare a number with a threshold. In these runs the numbers are far from it, so that
-rounding errors decide nothing.
+Decisions compare a number with a threshold. In these runs, the numbers are far from each threshold,
+so that rounding errors change no decision.
 """
 
 from collections.abc import Mapping
@@ -61,7 +61,7 @@ def check(
     return oracle, found
 
 
-# At 5 and 15 mrad, which the deformation of the joint passes.
+# The knees are at 5 and 15 mrad, within the range of the deformation.
 TWO_KNEES = {"range.phi": 0.025, "range.knee": 0.2, "range.knee_2": 0.6}
 GENERAL = {"rls.symmetric": 0, "rls.n": 4, "rls.m": 1}
 CASES: Mapping[str, tuple[Joint, Mapping[str, float]]] = {
@@ -186,7 +186,9 @@ def test_every_tick_of_a_joint_with_a_misfit(c: Library, name: str) -> None:
 
 @slow
 def test_every_tick_of_a_misfit_that_begins(c: Library) -> None:
-    """The older data are forgotten, five times as fast when the new ones agree by themselves."""
+    """Older data are forgotten five times as fast when the recent data do not contradict each
+    other.
+    """
     joint = replace(JOINT, duration=12.0, stiffness=lambda t: np.where(t < 3.0, 1.0, 0.95))
     values = {**ONE, **PLAIN, "rls.n": 2}
     z = joint.measurements()

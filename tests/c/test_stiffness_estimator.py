@@ -123,7 +123,7 @@ def test_modality_can_change_between_ticks(c: Library) -> None:
 
 @pytest.mark.parametrize("method", [1, 2])
 def test_a_mirrored_motion_has_mirrored_torques(c: Library, method: int) -> None:
-    """All positions but that of the other motor, and all torques, with the other sign."""
+    """GIVEN all torques, and all positions except theta_c, with the opposite sign."""
     z = table1_recording().measurements()[:4000]
     mirror = np.array([-1.0, -1.0, 1.0, -1.0, -1.0])
     values = {**REGRESSION, "method": method}

@@ -1,5 +1,4 @@
-/* An FMU driven from C and linked with its sources, in any version of FMI. The inputs depend on the variant.
- */
+/* An FMU driven from C and linked with its sources, in any version of FMI. The inputs depend on the variant. */
 #ifndef SH_TEST_DRIVE_H
 #define SH_TEST_DRIVE_H
 

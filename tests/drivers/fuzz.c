@@ -308,9 +308,7 @@ static void use_states(void)
     }
 }
 
-/* Up to MAX_REFERENCES value references, mostly of the types (bits SH_TYPE_*) and of the roles
- * first to last.
- */
+/* Up to MAX_REFERENCES value references, mostly of the types (bits SH_TYPE_*) and of the roles first to last. */
 static size_t some_references(uint32_t *references, unsigned types, sh_role first, sh_role last)
 {
     const size_t n = below(MAX_REFERENCES + 1);

@@ -1,5 +1,5 @@
-/* Runs four instances one after the other, then each in its own thread. The outputs must be the same, bit
- * for bit.
+/* Runs four instances one after the other, then each in its own thread. The outputs of sequential and parallel runs
+ * must be equal bit for bit.
  *
  * An instance also saves, serialises and restores its state, makes a call that is
  * refused, and is reset. A memory checker finds memory that is not freed.

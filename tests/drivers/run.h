@@ -4,8 +4,7 @@
 
 #include "sigmahat.h"
 
-/* Runs ticks over the samples z [size: samples]; after the last sample it begins again with the
- * first.
+/* Runs ticks over the samples z [size: samples]; after the last sample it begins again with the first.
  *
  * estimate  in and out, as for sh_estimator_tick
  * record    [size: ticks] the estimate of every tick, or NULL

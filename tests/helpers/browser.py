@@ -36,7 +36,7 @@ const section = [...document.querySelectorAll("section")]
 return [...section.querySelectorAll("tbody tr")]
   .map(row => [...row.cells].map(cell => cell.textContent).join(" "));
 """
-"""Rows of a table, also where it is folded."""
+"""Returns the rows of a table, even if the table is folded."""
 
 
 class Page:
@@ -44,7 +44,7 @@ class Page:
         self.driver = driver
 
     def show(self, file: Path | str) -> None:
-        """Opens a file or an address instead, and waits until its plots are drawn."""
+        """Replaces the page by a file or an address, and waits until its plots are drawn."""
         self.complaints(), self.requests()
         self.driver.get(file if isinstance(file, str) else file.as_uri())
         self.driver.execute_async_script(_IDLE)
@@ -54,7 +54,7 @@ class Page:
         return self.driver.execute_script(script, *arguments)
 
     def until(self, is_so: Callable[[], Any], what: str = "") -> Any:
-        """Waits until something is there or true. Returns it."""
+        """Waits until an element exists or a condition is true. Returns it."""
         wait = WebDriverWait(self.driver, _LONGEST, 0.1, _REDRAWN)
         return wait.until(lambda _: is_so(), what)
 
@@ -79,7 +79,7 @@ class Page:
 
 @contextmanager
 def opened(file: Path | str, width: int = 1400, dark: bool = False) -> Iterator[Page]:
-    """Opens a file or an address, and waits until its plots are drawn, if it has some."""
+    """Opens a file or an address, and waits until all plots of the page are drawn."""
     chromium, driver = need("chromium"), need("chromedriver")
     options = ChromeOptions()
     options.binary_location = chromium

@@ -24,8 +24,9 @@ REALS = ("double", "float")
 LONG = "_Float64x"
 """long double, for which glibc has functions by this name."""
 _WITHOUT_DECLARATIONS = ("constants.h", "real_math.h", "pair.h")
-"""Headers with nothing but macros and inline functions. They include those of the C library, which
-cffi cannot read."""
+"""Headers with nothing but macros and inline functions. These headers include headers of the
+standard library, which cffi cannot read.
+"""
 
 _FORMATS = {"double": "f8", "float": "f4", "long double": "g", "int": "i4"}
 MEASUREMENTS = ("theta", "q", "theta_c", "tau", "tau_e_sensor")
@@ -120,7 +121,7 @@ class Library:
 def compile_library(parent: Path, real: str, *flags: str) -> Library:
     """The library with `real`, one of REALS or LONG, compiled in a new folder of `parent`.
 
-    In plain C, as a controller compiles it.
+    Compiles the library in plain C, as for a controller.
     """
     folder = Path(tempfile.mkdtemp(dir=parent))
     run(
@@ -135,7 +136,7 @@ def compile_library(parent: Path, real: str, *flags: str) -> Library:
 
 @cache
 def type_of_estimate(build: Path, real: str) -> np.dtype[Any]:
-    """The layout of `sh_estimate`, on every processor of the tests."""
+    """The layout of `sh_estimate` is the same on every processor of the tests."""
     return Library(build, real).dtype("sh_estimate")
 
 
@@ -190,7 +191,9 @@ class Estimator:
         return record
 
     def repeat(self, measurements: Array, ticks: int) -> int:
-        """Runs ticks over measurements, which are repeated. Returns how many were not skipped."""
+        """Runs ticks over measurements, which are repeated. Returns the number of ticks that were
+        not skipped.
+        """
         return self._drive(measurements, ticks, None)
 
     def _drive(self, measurements: Array, ticks: int, record: NDArray[np.void] | None) -> int:

@@ -1,7 +1,7 @@
 """The programs of `drivers/`, each linked with the sources of one FMU.
 
 If a compiler or a checker is missing, the test is skipped. In the gate, which sets SIGMAHAT_GATE=1,
-it fails.
+the test fails instead.
 """
 
 import shutil
@@ -55,7 +55,8 @@ def compile_driver(
         *(f"-I{path}" for path in folders),
         *(f"-isystem{HEADERS}", *map(str, files), "-lm", "-o", str(program)),
     ]
-    # With no limit of time: a compiler may have to make its C library first, which takes minutes.
+    # The compilation has no time limit, because a compiler may first build its C library for
+    # minutes.
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     return program

@@ -1,6 +1,6 @@
 """A log of a series elastic knee in counts, degrees and amperes, and wrong configurations of it.
 
-The twelve wrong ones are those of the issue that asked for `sigmahat check`.
+The twelve wrong configurations are from the issue that asked for `sigmahat check`.
 """
 
 from collections.abc import Mapping
@@ -79,7 +79,9 @@ WRONG: Mapping[str, tuple[str, str, tuple[str, ...]]] = {
     ),
     "torque constant + 10 %": ("= 0.05\n", "= 0.055\n", ("ports.tau.torque_constant",)),
 }
-"""By name: what is replaced in RIGHT, by what, and the keys of which one has to be named."""
+"""Wrong configurations by name: old text in RIGHT, new text, and keys, one of which `check` must
+name.
+"""
 
 
 def joint_log(plant: Mapping[str, float], T: float, load: float = 0.0) -> dict[str, Array]:
@@ -141,7 +143,8 @@ def log_by_hand(hold: float) -> Mapping[str, Array]:
 
 
 def log_under_gravity(change: float) -> Mapping[str, Array]:
-    """The knee with a weight, in slow motion, in closed form. Its stiffness changes at 8 s.
+    """The knee with a weight, in slow motion, in closed form. The stiffness of the knee changes at
+    8 s.
 
     change  of the stiffness, relative: 1 doubles it
     """

@@ -1,4 +1,4 @@
-"""Commands of sigmahat in this process, and what the command line says when it refuses."""
+"""Runs commands of sigmahat in this process, and returns their output or their error message."""
 
 import io
 import json
@@ -15,7 +15,7 @@ from sigmahat.cli import main
 
 
 def one_line(done: subprocess.CompletedProcess[str]) -> str:
-    """The line that a command failed with; it must be one line, and all that was printed."""
+    """Returns the error message of a command, which must be one line and the only output."""
     assert (done.returncode, done.stdout) == (2, "")
     (line,) = done.stderr.splitlines()
     assert line.startswith("sigmahat: error: ")
@@ -35,7 +35,7 @@ class Shell:
     """Runs commands without "sigmahat" before them; separates arguments as a shell does."""
 
     err = ""
-    """Output of the last command there."""
+    """Returns the output of the last command in the folder."""
 
     def run(self, command: str, status: int = 0) -> str:
         """Output of a command that must end with this status."""
@@ -58,7 +58,7 @@ class Shell:
 
 @contextmanager
 def working_in(folder: Path) -> Iterator[None]:
-    """Commands run in a folder, and draw no figures, which take most of the time."""
+    """Commands run in a folder, and draw no figures, because figures take most of the time."""
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)
         patch.setattr("sigmahat.logs.estimate._save_figure", lambda *_: None)

@@ -1,7 +1,7 @@
 """Commands of sigmahat with files from strangers: each in a process of its own, with limits.
 
-One process imports the package and is forked for every command, so that one takes some hundredths
-of a second. Each process also imports this file, so the file imports no other helper.
+One process imports the package and is forked for every command, so that a command takes only
+hundredths of a second. Each process also imports this file, so the file imports no other helper.
 """
 
 import json
@@ -42,7 +42,7 @@ class Done:
     megabytes: float  # peak of the memory in RAM
 
     def complaint(self) -> str | None:
-        """A forbidden action of the command that a file has caused; None without one."""
+        """Returns a forbidden action of the command that a file has caused; None if there is none."""
         if self.seconds > LONGEST:
             return f"took {self.seconds:.1f} s"
         if self.megabytes > MOST_MEMORY:
@@ -72,7 +72,7 @@ def run(folder: Path, *arguments: str) -> Done:
 
 
 def _run(folder: Path, arguments: tuple[str, ...], place: Path) -> None:
-    """Runs the command in the fork; its outputs and what it used come to files in `place`."""
+    """Runs the command in the fork; outputs, time and memory are written to files in `place`."""
     from sigmahat.cli import main
 
     os.chdir(folder)

@@ -1,4 +1,6 @@
-"""The hypotheses of a change of FilteredRegression in numpy, as c/filtered_regression/change.c."""
+"""The hypotheses of a change in FilteredRegression, in numpy; C code:
+c/filtered_regression/change.c.
+"""
 
 from copy import deepcopy
 from typing import TYPE_CHECKING
@@ -12,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def squared_error(sums: "Information", row: "Long", variance: float) -> float:
-    """Square of the prediction error of y in a row, over its variance."""
+    """Squared prediction error of y in a row, divided by the variance of this error."""
     n = sums.size
     A, x = sums.matrix[:n, :n], row[:n]
     error = row[-1] - x @ solve(A, sums.matrix[:n, -1:])[:, 0]
@@ -20,7 +22,9 @@ def squared_error(sums: "Information", row: "Long", variance: float) -> float:
 
 
 class Change:
-    """Whether the spring, or friction, has changed. In the oracle's runs, neither has."""
+    """Whether the spring, or friction, has changed. In the runs of the oracle, neither spring nor
+    friction changes.
+    """
 
     def __init__(self, sums: "Information", spring: int, friction: slice) -> None:
         """spring, friction  columns: the number of the first ones, and the others"""
@@ -38,7 +42,7 @@ class Change:
         self.evidence, self.blocks = 0.0, 0
 
     def take(self, row: "Long", variance: float, blocks: "Blocks", friction_drifts: bool) -> None:
-        """A block, which the other hypotheses have not taken yet."""
+        """Updates this hypothesis by a block that the other hypotheses have not taken yet."""
         before = squared_error(blocks.all, row, variance)
         self.of_friction = squared_error(blocks.walking, row, variance)
         self.before = self.of_friction if friction_drifts else before

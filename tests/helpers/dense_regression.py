@@ -72,7 +72,7 @@ class Information:
         self.matrix += w * np.outer(row, row)
 
     def factors(self) -> tuple[Long, Long, np.longdouble]:
-        """Rows (U, U z) [size: size x size + 2], D, and the rest, by elimination."""
+        """Returns rows (U, U z) [size: size x size + 2], D, and the residual part, by elimination."""
         left, size = self.matrix.copy(), self.size
         rows: Long = np.zeros((size, len(left)), dtype=np.longdouble)
         D: Long = np.zeros(size, dtype=np.longdouble)
@@ -88,7 +88,7 @@ class Information:
         self.multiply(rows, np.maximum(D * keep, self.least), rest * keep)
 
     def restart(self, count: int, precision: float) -> None:
-        """For the first parameters, only this precision is known."""
+        """Resets the information about the first parameters to this precision."""
         rows, D, rest = self.factors()
         rows[:count] = np.eye(self.size, len(self.matrix))[:count]
         D[:count] = precision
@@ -99,7 +99,7 @@ class Information:
         self.matrix[-1, -1] += rest
 
     def walk_sample(self, v: Long, c: float) -> tuple[Long, float]:
-        """The row, and its weight, that add c v v' to the inverse."""
+        """Returns a row and its weight that add c v v' to the inverse of the information."""
         g = self.matrix[:, : self.size] @ v
         return g, -c / (1 + c * float(v @ g[: self.size]))
 
@@ -140,7 +140,7 @@ class Posterior:
         self.beta = self.P @ right
 
     def learn(self, row: Long, w: float) -> float:
-        """Returns the variance of the prediction of y over that of the sample."""
+        """Returns the variance of the prediction of y divided by the variance of the sample."""
         x, sides = row[self.chosen], row[-SIDES:]
         w = w * self.weight
         Px = self.P @ x
@@ -157,7 +157,9 @@ class Posterior:
         self.P = self.P + information * gain * np.outer(along, along)
 
     def remove(self, information: float) -> None:
-        """Removes false information about b by rounding of theta, as far as the prior stays."""
+        """Removes false information about b by rounding of theta, but keeps the information of the
+        prior.
+        """
         self.surplus += information
         back = min(self.surplus, float(1 / self.P[-1, -1] - 1))
         if back > 0:
@@ -166,7 +168,7 @@ class Posterior:
             self.removed += back
 
     def remove_noise(self) -> None:
-        """Noise of the torque in its own column."""
+        """Removes the noise of the torque from the column of the torque."""
         N, by_gain = self.of_drive
         if self.drive < 0 or N <= 0:
             return
@@ -266,7 +268,9 @@ class Oracle:
         return [slice(begin, end + 1) for begin, end in zip(begins, ends, strict=True)]
 
     def set_noise(self) -> None:
-        """After the filter: of the torque [(N.m)2], of theta by its variance [(N.m/rad)2]."""
+        """Noise gains behind the filter: of the torque [(N.m)2], and of theta per variance
+        [(N.m/rad)2].
+        """
         p, K = self.p, self.K
         pulse = np.concatenate([[0.0], np.full(K, 1 / K), np.zeros(20000)])
         response = [through(pulse, order, self.w, self.T) for order in (0, 2)]
@@ -292,7 +296,7 @@ class Oracle:
         return widths is None or widths[index] < covered
 
     def posterior(self, trial: int, weight: float) -> Posterior:
-        """Of the columns that are used, and behind them those of the group on trial."""
+        """Indices of the used columns, and behind them of the columns of the group that is tried."""
         tried = [0 < group == trial for group in self.groups]
         own = [i for i in range(self.n) if self.is_distinct(i)]
         chosen = [i for i in own if self.used[self.groups[i]] and not tried[i]]
@@ -303,7 +307,7 @@ class Oracle:
     # Passes
 
     def make_passes(self) -> Iterator[None]:
-        """Builds posteriors from all data, one after the other; a tick brings it one step on."""
+        """Builds posteriors from all data, one after the other, by one step in each tick."""
         while True:
             least = max(1.0, self.q)
             weight = 1 / (least if self.trial else self.factor)
@@ -336,7 +340,9 @@ class Oracle:
         return 0.2 if count < 15 else 0.0101 * 0.05 * count
 
     def end_build(self) -> None:
-        """Removes the noise in its columns; rows that come before it is used are added later."""
+        """Removes the noise in the columns of the new posterior. Rows that arrive before its use
+        are added later.
+        """
         self.build.solve(self.data)
         if self.p["prior.B"] > 0:
             self.build.remove(0.0)
@@ -373,7 +379,7 @@ class Oracle:
         return self.blocks.count >= 20 and len(self.live.chosen) < self.blocks.count
 
     def judge_recent(self) -> None:
-        """The misfit of the recent blocks, which has to be beyond chance."""
+        """Misfit of the recent blocks, if the misfit is not due to chance."""
         blocks, recent, self.recent_q = self.blocks, self.blocks.recent_count, 0.0
         if recent >= 20 and not self.friction_drifts and self.p["regression.drift"] <= 0:
             squares = blocks.recent.squares(self.beta) - float(self.beta @ self.beta)
@@ -396,7 +402,7 @@ class Oracle:
                 self.factor = max(self.factor, 1 + (whole - t) * max(1, N / 5))
 
     def plan(self) -> None:
-        """After each pass a trial of the next group, if it has columns."""
+        """After each pass, the next group is tried if the group has columns."""
         self.pause = 0.0
         was_trial, self.trial = self.trial != 0, 0
         if was_trial or self.blocks.count < 15:
@@ -408,8 +414,9 @@ class Oracle:
         self.last_trial = self.trial or self.last_trial
 
     def watch_friction(self, time: float, step: int) -> Iterator[None]:
-        """Step 0 and 1: the blocks, of viscous and Coulomb friction; 2 and 3: the data. Each takes
-        two ticks, between which a row may come."""
+        """Step 0 and 1: the blocks, of viscous and Coulomb friction; 2 and 3: the data. Each update
+        takes two ticks, and a row may arrive between the two ticks.
+        """
         blocks, N = self.blocks, self.blocks.count
         kind = ("VISCOUS", "COULOMB")[step % 2]
         sums = blocks.walking if step < 2 else self.data
@@ -469,7 +476,7 @@ class Oracle:
         return float(largest**2 * variance)
 
     def noise_of_row(self, filtered: Filtered, unknown: float) -> tuple[float, float, float]:
-        """R, the factor in it by errors that last, and lambda."""
+        """Returns R, the factor of R by errors that do not average out, and lambda."""
         p, rounding = self.p, self.sigma**2 * float(np.sum(self.counts**2)) / 12
         stays, share = rounding * self.resting, 0.0
         if filtered.measured:
@@ -515,7 +522,9 @@ class Oracle:
     def make_steps(
         self, row: Long, R: float, last: float, rough: float, measured: bool
     ) -> Iterator[None]:
-        """The seven steps after a row, spread over the ticks until the next one."""
+        """Makes the seven steps after a row, which are distributed over the ticks until the next
+        row.
+        """
         self.set_beta()
         yield
         self.new_variances = True
@@ -547,7 +556,7 @@ class Oracle:
             yield
 
     def pass_on(self, step: int) -> None:
-        """Not while friction gets the variances of its priors: a column in each row."""
+        """The refit pauses while friction gets the variances of its priors, one column in each row."""
         if self.change.left > 0:
             self.change.left -= step == 1 and self.is_sampled
             self.is_sampled = step == 0
@@ -593,7 +602,7 @@ class Oracle:
         return float(row[-1] - row[:-SIDES] @ self.beta)
 
     def remove_noise(self, row: Long, share: float, R: float) -> None:
-        """Of the torque from its own column, where y contains it, too."""
+        """Removes the noise of the torque, which y also contains, from the column of the torque."""
         i, torque = self.kinds.index("DRIVE"), row[-SIDES]
         slope = row[i] / torque
         returned = np.clip(slope * self.beta[i], -0.5, 0.5)
@@ -606,7 +615,7 @@ class Oracle:
         if filtered.measured or self.starting <= 0:
             return True
         self.starting -= self.K * self.T
-        # Effects outside of the equation must not hide a slow motion.
+        # Columns of effects outside the equation of motion must not hide a slow motion.
         chosen = self.live.chosen
         x = np.where([self.kinds[i] in EQUATION for i in chosen], row[chosen], 0)
         variance = self.torque_noise + self.inertial * self.counts[0] ** 2 / 12
@@ -623,7 +632,7 @@ class Oracle:
             self.blocks.rows.clear()
 
     def mean_row(self, filtered: Filtered, loads: Array) -> Long:
-        """Of the samples; what depends on the estimate does so by the present one."""
+        """Signals of the samples. Signals that depend on the estimate use the present estimate."""
 
         def mean(x: Array) -> Any:
             return np.mean(x[self.samples], axis=0)
@@ -699,7 +708,9 @@ class Oracle:
     # Outputs
 
     def set_beta(self) -> None:
-        """Estimates of the posterior, by the gain and by y, until it changes."""
+        """Estimates of the posterior for both right-hand sides, gain and y, stored until the
+        posterior changes.
+        """
         estimates, self.P = self.live.weighted()
         self.by_gain, self.beta = np.zeros((SIDES, self.n), dtype=np.longdouble)
         self.by_gain[self.live.chosen], self.beta[self.live.chosen] = estimates.T

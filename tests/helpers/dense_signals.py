@@ -40,7 +40,9 @@ def through(x: Array, order: int, w: float, T: float, held: bool = False) -> Arr
 
 @cache
 def as_if_smooth(w: float, T: float) -> tuple[Array, Array]:
-    """Filter of a signal that is given by its mean over each sample, after that sample."""
+    """Filters a signal that is given by its mean over each sample; the output is at the end of the
+    sample.
+    """
     (b, a), (of_second, _) = (discrete(order, w, T, "zoh") for order in (0, 2))
     return (b + T**2 / 12 * of_second)[1:], a  # without the 0 for the sample to come
 
@@ -65,7 +67,9 @@ def decimation(p: Parameters) -> int:
 
 
 def direction(c: Library, theta: Array, count: float, slow: float) -> tuple[Array, Array]:
-    """Mean sign over the sample that ends at each instant, and 0 if it is known, else 1 or more."""
+    """Returns the mean sign over the sample that ends at each instant, and 0 if the sign is known,
+    else 1 or more.
+    """
     motion = c.new("sh_motion_sign")
     c.lib.sh_motion_sign_start(motion, theta[0])
     found = [(0.0, 1.0)]
@@ -143,7 +147,9 @@ def plays(phi: Array, runs: list[slice], range_phi: float) -> Array:
 
 
 class Inputs:
-    """Signals of the columns before the filters, and their slopes over phi [size: ticks x n]."""
+    """Signals of the columns before the filters, and derivatives of the signals by phi [size: ticks
+    x n].
+    """
 
     def __init__(self, p: Parameters, z: Array, runs: list[slice]) -> None:
         theta, q, theta_c = z[:, 0], z[:, 1], z[:, 2]
@@ -246,7 +252,7 @@ class Filtered:
         return through(x, order, self.w, self.T, held)
 
     def column(self, i: int) -> Array:
-        """Signals without the estimate; LOAD, DELAY, SIN_M, and COS_M are set later."""
+        """Signals that do not depend on the estimate; LOAD, DELAY, SIN_M, and COS_M are set later."""
         kind, _, prior = self.columns[i]
         sign = np.append(self.sign[1:], 0.0)
         smooth = np.asarray(signal.lfilter(*as_if_smooth(self.w, self.T), self.sign))
@@ -268,7 +274,7 @@ class Filtered:
         return self.filtered(self.F[:, i], 0)
 
     def encoder_error(self, i: int) -> tuple[Array, Array]:
-        """For the column i: the filtered signal, and the motor torque that it causes."""
+        """Returns the filtered signal of column i, and the motor torque that the signal causes."""
         f = self.F[:, i]
         motor = self.of_velocity * self.filtered(f - f[0], 1)
         motor = motor + self.of_acceleration * self.filtered(f - f[0], 2)

@@ -48,7 +48,7 @@ RANGES: Mapping[str, tuple[float, float]] = {
 
 
 def magnitudes(low: float, high: float) -> st.SearchStrategy[float]:
-    """Both limits, and what is between them, on a logarithmic scale."""
+    """Numbers from the lower to the upper limit, including both, on a logarithmic scale."""
     exponents = st.floats(math.log10(max(low, 1e-15)), math.log10(high))
     between = exponents.map(lambda e: min(max(10.0**e, low), high))
     return st.one_of(st.sampled_from([float(low), float(high)]), between)
@@ -147,7 +147,7 @@ often = settings(
 def c(
     request: pytest.FixtureRequest, build: Path, tmp_path_factory: pytest.TempPathFactory
 ) -> Library:
-    """The library in double, that of the build, and in single precision."""
+    """The library of the build in double precision, and a library in single precision."""
     if request.param == "double":
         return Library(build)
     return compile_library(tmp_path_factory.getbasetemp(), request.param)

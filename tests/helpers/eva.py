@@ -12,7 +12,7 @@ from gate import need
 
 OPTIONS = (
     *("-eva", "-machdep", "gcc_x86_64"),
-    # Infinite numbers and NaN are values as others: no operation on them is an error.
+    # Eva treats infinite numbers and NaN as normal values: no operation on them is an error.
     *("-warn-special-float", "none"),
     "-warn-invalid-pointer",  # computing a pointer outside of an object is an error, too
     *("-eva-domains", "cvalue", "-eva-slevel", "0"),
@@ -25,7 +25,9 @@ class Analysis:
     """What Eva found."""
 
     alarms: tuple[str, ...]
-    """Possible errors, and assertions and preconditions that it could not prove: place and text."""
+    """Returns possible errors, and assertions and preconditions that Eva could not prove: place and
+    text.
+    """
     proven: int  # assertions and preconditions
     coverage: int  # share of the statements that it reached in the functions that it analysed [%]
     text: str  # all that it printed
@@ -47,7 +49,7 @@ def analyse(
     macros   for the preprocessor
     before   header that every file includes before all others
 
-    AssertionError if Frama-C did not come to its end.
+    Raises AssertionError if Frama-C stopped before the end of the analysis.
     """
     preprocessor = [
         *(f"-I{folder}" for folder in folders),
@@ -78,7 +80,7 @@ def analyse(
 
 
 def with_fault(source: Path, copy: Path, file: str, code: str, fault: str = "") -> Path:
-    """Copies a folder of sources. In one file `fault` stands in place of `code`."""
+    """Copies a folder of sources. In one file, the text `code` is replaced by `fault`."""
     shutil.copytree(source, copy)
     text = (copy / file).read_text()
     assert text.count(code) == 1

@@ -18,7 +18,9 @@ _MODEL_EXCHANGE = {
 
 
 def functions(prefix: str) -> dict[str, list[str]]:
-    """By the name of a function, without its prefix "fmi2" or "fmi3": its parameters in C."""
+    """C parameters of each function, by the name of the function without the prefix "fmi2" or
+    "fmi3".
+    """
     text = (HEADERS / f"{prefix}FunctionTypes.h").read_text()
     declared = re.findall(rf"^ *typedef [^;(]+\b{prefix}(\w+)TYPE *\(([^)]*)\);", text, re.M)
     left_out = _MODEL_EXCHANGE if prefix == "fmi2" else set()
@@ -38,7 +40,8 @@ def of_an_instance(prefix: str) -> dict[str, list[str]]:
     }
 
 
-# No variable has one of these types: their functions are those of String but for their names.
+# No variable has one of these types, and their functions differ from the functions of String only
+# by name.
 _LIKE_STRING = r"[GS]et(Float32|U?Int8|U?Int16|UInt32|UInt64)"
 
 

@@ -81,7 +81,9 @@ class _Instance:
         return (ctypes.c_uint * len(names))(*map(self.reference, names))
 
     def access(self, function: str, references: Any, values: Any) -> int:
-        """Calls GetX or SetX; both arguments are arrays. FMI 3.0 has the number of each."""
+        """Calls GetX or SetX; both arguments are arrays. Functions of FMI 3.0 also take the length
+        of each array.
+        """
         n = SIZE(len(values))
         return self.call(function, references, n, values, *([n] if self.prefix == "fmi3" else []))
 
@@ -107,7 +109,7 @@ class _Instance:
     def enter(
         self, start: float = 0.0, stop: float | None = None, tolerance: float | None = None
     ) -> int:
-        """Tells the experiment and enters initialisation mode."""
+        """Sets the experiment (start and stop time) and enters initialisation mode."""
         experiment = (
             *(int(tolerance is not None), REAL(tolerance or 0.0), REAL(start)),
             *(int(stop is not None), REAL(stop or 0.0)),
@@ -285,7 +287,7 @@ class Instance3(_Instance):
         self.messages.append((status, category.decode(), text.decode()))
 
     def step(self, t: float, h: float) -> int:
-        """Makes a step, which must neither ask for anything nor end early."""
+        """Makes a step, which must not return early or request an event."""
         flags, reached = [ctypes.c_bool(True) for _ in range(3)], REAL(math.nan)
         places = [*map(ctypes.byref, flags), ctypes.byref(reached)]
         status = self.call("DoStep", REAL(t), REAL(h), True, *places)

@@ -18,7 +18,7 @@ OTHER_THAN_0 = {
     **{"1": 0.2, "1/s": 1.0, "s": 1e-3, "m": 0.05, "rad": 2e-4, "rad/s": 0.1, "N/m": 1e4},
     **{"N.m": 0.02, "N.m/rad": 50.0, "N.m/rad3": 1e4, "N.m.s/rad": 10.0},
 }
-"""By unit, a value with an effect for a parameter that is 0 at the start."""
+"""Values for parameters that are 0 at the start, by unit; each value has an effect."""
 
 # Inputs of the FMUs as functions of time: measurements that excite all parameters, and torques.
 SIGNALS: dict[str, Callable[[float], float]] = {
@@ -110,7 +110,9 @@ class Driver:
 
 @dataclass(frozen=True)
 class Fmi:
-    """A version of FMI. Called with the name of an FMU, it makes an instance."""
+    """A version of FMI. The fixture is a function that makes an instance of the FMU with a given
+    name.
+    """
 
     kind: type[Instance] | type[Instance3]
     path: Callable[[str], Path]

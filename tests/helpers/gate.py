@@ -26,8 +26,9 @@ _PACKAGES = {
 }
 """Name of the Debian package, if it differs from the name of the program."""
 _ALWAYS_THERE = {"c++", "cc", "g++", "gcc", "git", "sh", "wine64"}
-"""In the run of the gate with a bare PATH; Wine is found in its own folder. CMake is there, but
-not make, which it uses if a test names no other build tool."""
+"""The gate has a run with a minimal PATH, in which Wine is found in its own folder. This PATH has
+CMake but not make, which CMake uses if a test names no other build tool.
+"""
 
 
 def missing(what: str, how: str) -> NoReturn:
@@ -43,10 +44,10 @@ def missing(what: str, how: str) -> NoReturn:
 
 
 def need(name: str, folder: str = "") -> str:
-    """Path of a program. Ends the test with `missing` if it is not installed.
+    """Path of a program. Ends the test with the message `missing` if a program is not installed.
 
-    Tests call no program past this function. The gate repeats the tests that need a tool, without
-    the tools.
+    Tests must find all programs with this function. The gate repeats the tests that need a tool,
+    without the tools.
 
     folder  where the program may be besides the PATH
     """
@@ -58,7 +59,7 @@ def need(name: str, folder: str = "") -> str:
 
 
 def need_of_environment(name: str) -> str:
-    """Path of a program of the Python environment. Ends the test if it is not installed."""
+    """Path of a program of the Python environment. Ends the test if the program is not installed."""
     found = shutil.which(name, path=sysconfig.get_path("scripts"))
     if found is None:
         missing(f"{name} of the environment", "cmake --build build --target packages_test")
@@ -66,7 +67,8 @@ def need_of_environment(name: str) -> str:
 
 
 def note_program(event: str, arguments: tuple[object, ...]) -> None:
-    """Notes the test if it starts a program by its name alone, past `need`; see sys.addaudithook.
+    """Records a test that starts a program by its name without a call of `need`; see
+    sys.addaudithook.
 
     Without the program the test fails, and the gate shows this failure.
     """

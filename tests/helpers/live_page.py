@@ -42,7 +42,7 @@ class LivePage:
         self.runs(False)
 
     def runs(self, running: bool) -> None:
-        """Lets the time of the simulated joint pass, or not."""
+        """Starts or stops the time of the simulated joint."""
         self.page.run("joint.run(arguments[0])", running)
 
     def text(self, name: str) -> str:
@@ -69,7 +69,9 @@ class LivePage:
         return {name: np.array(values, dtype=np.float64) for name, values in result.items()}
 
     def drops(self, text: str, name: str = "log.csv") -> str:
-        """Drops a file, and returns what the page complains of; nothing if the file is good."""
+        """Drops a file on the page, and returns the error message of the page; empty if the file is
+        valid.
+        """
         self.page.run(f"{_DROP} log.form.hidden = true;", name, text)
         self.page.until(lambda: self.text("log-message") or self.text("log-name"))
         return self.text("log-message")
@@ -78,7 +80,7 @@ class LivePage:
         self.page.run(_FILL, fields)
 
     def estimates(self, fields: Mapping[str, object]) -> str:
-        """Fills fields of the log in, and lets it be estimated. Returns what it complains of."""
+        """Fills in the fields for the log, and starts the estimation. Returns what it complains of."""
         self.fills(fields)
         self.page.run("log.form.requestSubmit()")
         self.page.until(lambda: self.text("log-message") or self.text("answer"))

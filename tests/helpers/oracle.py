@@ -1,9 +1,9 @@
 """The estimator in numpy, written from the paper, with which the C code is compared.
 
 The formulas are as printed in the paper, even if the C code has another form: (8) with its integral
-I_tau and r(k), (14) and (25) with K and P - a K F'P. In doubles P would lose all its
-digits in that form. So all numbers have multiple precision (mpfr in arrays of dtype object), with
-many more DIGITS than cancel in the worst case. Inputs are doubles, which are taken as exact.
+I_tau and r(k), (14) and (25) with K and P - a K F'P. In double precision, the formulas of the paper
+would lose all digits of P. So all numbers have multiple precision (mpfr in arrays of dtype object),
+with many more DIGITS than cancel in the worst case. Inputs are doubles, which are taken as exact.
 
 Parameters are a flat mapping from the names of the FMU to values.
 """

@@ -31,7 +31,7 @@ def run_plant(
     """A plant in communication steps of h [s] under torques [size: steps + 1 x inputs].
 
     Torques are linear from one row to the next, or each is held until the next. The steps begin at
-    multiples of h, or at the times t of the rows. Gives each recorded variable [size: steps + 1].
+    multiples of h, or at the times t of the rows. Returns each recorded variable [size: steps + 1].
     """
     steps = len(torques) - 1
     slopes = np.zeros_like(torques) if held else np.diff(torques, axis=0, append=0.0) / h
@@ -68,7 +68,7 @@ def sinusoids(
 
 
 def relative_error(run: Mapping[str, Array], reference: Array) -> Array:
-    """Largest error of each state over its range.
+    """Returns the largest error of each state, relative to the range of the state.
 
     The run has the states of the reference [size: p x states] first, in the same order.
     """

@@ -80,7 +80,7 @@ class Log:
     def hysteresis(self) -> float:
         """RMS of the torque around its mean at each deformation, in percent of its range.
 
-        No function of the deformation, whatever its form, has a smaller error.
+        This RMS is a lower limit for the error of any function of the deformation.
         """
         torque = pd.Series(self.torque)
         error = torque - torque.groupby(np.floor(self.phi / BIN)).transform("mean")
@@ -90,7 +90,7 @@ class Log:
         """Deformation [rad] and torque [N.m], the mean of loading and unloading.
 
         Each branch is averaged in bins of deformation; bins that only one branch reaches are left
-        out. The log swings once, to its least angle, to its greatest and back.
+        out. The angle in a log goes to its minimum, to its maximum, and back.
         """
         rising = np.zeros(len(self.q), dtype=bool)
         rising[np.argmin(self.q) : np.argmax(self.q)] = True
@@ -150,7 +150,9 @@ def coverage(measured: Sequence[Log], fit: Estimator) -> float:
 
 
 def leave_one_out(measured: Sequence[Log]) -> dict[int, float]:
-    """RMS [%] of the torque at each setting but the outer two, with a fit to the other five."""
+    """RMS error [%] of the torque at each setting except the outer two, with a fit to the other
+    five settings.
+    """
     return {
         log.setting: log.rms(replay([each for each in measured if each is not log], False))
         for log in measured[1:-1]
@@ -205,7 +207,7 @@ def stiffness_table(measured: Sequence[Log], general: Estimator, odd: Estimator)
 
 
 def draw(measured: Sequence[Log], general: Estimator, odd: Estimator) -> Figure:
-    """Torque over deformation, measured and fitted, a panel for each setting."""
+    """Draws measured and fitted torque against deformation, one panel for each setting."""
     figure = Figure(figsize=(9.0, 6.0), layout="constrained")
     panels = figure.subplots(2, 3, sharex=True)
     for axes in panels[1]:

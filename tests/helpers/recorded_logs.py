@@ -70,7 +70,7 @@ def in_memory(configuration: str) -> Configuration:
 
 
 def write(found: Identified, path: Path) -> list[str]:
-    """Writes what was identified into a configuration; gives the keys that were set."""
+    """Writes the identified values into a configuration, and returns the keys that were set."""
     document = read_document(path)
     written = update(document, found)
     path.write_text(tomlkit.dumps(document))
@@ -126,7 +126,7 @@ def write_log(
 
 
 def estimated(folder: Path, columns: Columns, configuration: str, options: str = "") -> Path:
-    """A folder with knee.parquet, its configuration, and what `sigmahat estimate` has written."""
+    """A folder with knee.parquet, its configuration, and the output files of `sigmahat estimate`."""
     with working_in(folder):
         write_log(columns, Path("knee.parquet"), configuration)
         assert main(["estimate", "knee.parquet", "--quiet", *options.split()]) == 0

@@ -1,4 +1,4 @@
-"""Runs that several tests look at, each made once."""
+"""Simulation runs that several tests use; each run is made once."""
 
 from functools import cache
 

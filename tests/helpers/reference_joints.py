@@ -1,7 +1,7 @@
 """The AwAS solved by scipy, as a reference for the plants and the estimator.
 
-The equations are (5) with (28)-(31), written from the paper. They share nothing with the plants
-that are generated to C.
+The equations are (5) with (28)-(31), written from the paper. These equations share no code with the
+plants that are generated to C.
 """
 
 import math

@@ -26,7 +26,7 @@ WITHOUT_MISFITS = {
         *("power", "gap", "hysteresis", "eccentric_motor"),
     )
 }
-"""Parameters of FilteredRegression without the columns for what the model does not have."""
+"""Parameters of FilteredRegression without the columns for effects that the model does not have."""
 PLAIN = {"prior.torque_gain": 0.0, **WITHOUT_MISFITS}
 
 
@@ -37,7 +37,9 @@ def stop_operator(changes: Array, width: float) -> Array:
 
 
 def at_rest(z: Array) -> Array:
-    """A second in which a joint rests where its motor was, without load [size: 1000 x 5]."""
+    """One second in which a joint is at rest at the last motor position, without load [size: 1000 x
+    5].
+    """
     rest = z[-1:].repeat(1000, 0)
     rest[:, 1] = rest[:, 0]
     rest[:, 3] = 10**-2.5 * np.random.default_rng(1).normal(size=1000)
@@ -136,7 +138,7 @@ class MisfitJoint(Joint):
     coulomb_velocity: float = 5e-3
 
     def sum_of_sines(self, size: float, *frequencies: float) -> Array:
-        """Signal of about this size that starts at rest, at zero [rad]."""
+        """Signal of about this amplitude [rad] that starts at zero with zero velocity."""
         rng = np.random.default_rng(self.seed)
         waves = [np.sin(2 * np.pi * f * self.t + rng.uniform(0, 6)) for f in frequencies]
         start = 1 - np.exp(-((self.t / 0.3) ** 3))

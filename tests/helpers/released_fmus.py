@@ -13,7 +13,7 @@ FMUS = sorted(ESTIMATORS + PLANTS)
 TWINS = [f"{name}_FMI3" for name in FMUS]
 STEP, STEPS = 1e-3, 1000
 
-# The greatest difference that is allowed between two runs, relative to the variable's range.
+# Largest permitted difference between two runs, relative to the range of the variable.
 AGREEMENT = 1e-9
 
 
@@ -29,8 +29,8 @@ class Run:
             v for v in variables if v.causality == "output" and v.type in ("Real", "Float64")
         ]
         self.time = STEP * np.arange(STEPS + 1)
-        # Different for each input, so that exchanged ones are seen; 0 at the start, where
-        # importers differ in whether they set inputs before the initialisation ends.
+        # Each input has another signal, so that a test notices exchanged inputs. All inputs are 0
+        # at the start, because only some importers set inputs before the initialisation ends.
         self.signals = np.array(
             [
                 0.3 * np.sin(2 * np.pi * (1 + 0.37 * number) * self.time)
@@ -60,7 +60,7 @@ class Run:
         return trajectory
 
     def assert_same(self, other: NDArray[np.float64]) -> None:
-        """Fails, with the worst variable, where a trajectory is not FMPy's."""
+        """Fails and names the worst variable if a trajectory differs from the trajectory of FMPy."""
         assert other.shape == self.trajectory.shape
         scale = np.abs(self.trajectory).max(axis=0)
         difference = np.abs(other - self.trajectory).max(axis=0)

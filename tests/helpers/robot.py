@@ -74,9 +74,11 @@ class Estimated:
 class Axis:
     number: int
     estimated: Sequence[Estimated]
-    """Results from run a, from run b, and from b after a."""
+    """Results of run a alone, of run b alone, and of run b after run a."""
     validated: Sequence[dict[str, Any]]
-    """Output of `sigmahat validate --json` for run b with a, and for a with b."""
+    """Output of `sigmahat validate --json`: run b with the estimate of run a, and run a with the
+    estimate of run b.
+    """
 
 
 def study(number: int, data: Path, place: Path) -> Axis:

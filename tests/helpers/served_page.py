@@ -43,7 +43,7 @@ class Served:
         """Ctrl-C. Returns the exit status, and the output after the address."""
         self.process.send_signal(signal.SIGINT)
         status = self.process.wait(timeout=_LONGEST)
-        # Not by communicate, which does not know of lines that were read before.
+        # The method communicate() cannot be used, because some lines were already read.
         assert self.process.stdout is not None and self.process.stderr is not None
         return status, self.process.stdout.read(), self.process.stderr.read()
 
@@ -98,7 +98,7 @@ class Hand:
     def accepts(self, name: str) -> None:
         """Presses "accept" beside a finding until its value is in the input.
 
-        The findings are drawn anew when a check has ended, and take the button with them.
+        When a check has ended, the page draws the findings and their buttons again.
         """
         before = self.value(name)
 

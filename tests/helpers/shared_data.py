@@ -13,7 +13,7 @@ def data_folder(name: str, first: str) -> Path:
 
     first  a file that must be there
 
-    Raises FileNotFoundError if it is not. A test is skipped instead, if nobody named a folder.
+    Raises FileNotFoundError if the path does not exist. If no folder is set, the test is skipped.
     """
     variable = f"SIGMAHAT_{name.upper()}"
     beside = REPOSITORY.parent / "shared" / "data" / name

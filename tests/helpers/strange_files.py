@@ -1,4 +1,4 @@
-"""Logs, configurations and plans as no recorder writes them: mutated and made up, for fuzzing."""
+"""Mutated and random logs, configurations and plans for fuzzing."""
 
 from pathlib import Path
 from tempfile import TemporaryDirectory

@@ -17,13 +17,13 @@ QUICK = "sweep --modality RESIDUAL"
 
 
 def start(command: str) -> subprocess.Popen[str]:
-    """Starts a command that goes on meanwhile."""
+    """Starts a command in the background."""
     arguments, pipe = [sys.executable, "-m", "sigmahat", *shlex.split(command)], subprocess.PIPE
     return subprocess.Popen(arguments, stdout=pipe, stderr=pipe, text=True)
 
 
 def wait_until(is_so: Callable[[], bool], process: subprocess.Popen[Any]) -> None:
-    """Waits while a process goes on."""
+    """Waits for a condition while a process is running."""
     deadline = time.monotonic() + 300
     while not is_so():
         assert process.poll() is None, process.communicate()

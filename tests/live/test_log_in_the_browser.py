@@ -59,7 +59,7 @@ def test_the_log_of_the_tutorial(page: LivePage) -> None:
         assert np.max(np.abs(values - expected[name])[1000:]) < 1e-9 * size, name
     curve = page.arrays(_CURVES)
     phi, sigma, std = (curve[f"{name} 0"] for name in ("phi", "sigma", "std"))
-    # As record.py made it: tau_e = 300 phi + 25000 phi^3.
+    # The script record.py made this log with the spring tau_e = 300 phi + 25000 phi^3.
     assert np.all(np.abs(sigma - (300 + 75000 * phi**2)) < 3 * std)
     torque = np.abs(curve["torque 0"] - (300 * phi + 25000 * phi**3))
     assert np.all(torque <= 3 * curve["torqueStd 0"] + 1e-9)
@@ -247,5 +247,6 @@ def test_what_is_guessed_is_called_so(page: LivePage) -> None:
     assert page.drops(csv({**good(), "q": 1e9 * good()["tau"]})) == ""
     assert page.estimates({"motor.gamma": 50}).endswith("or fill it in.")
     assert "guessed" not in page.estimates({"range.phi": 1e9})
-    # A negative gear ratio is one: the guess of the largest torque takes its size.
+    # A negative gear ratio is valid: the guess of the largest torque uses the magnitude of the
+    # ratio.
     assert page.drops(csv(good())) == "" and page.estimates({"motor.gamma": -50}) == ""

@@ -1,6 +1,7 @@
 """A robot of another implementation of ROS 2 and DDS: RustDDS with ros2-client.
 
-Robot and estimator run in a separate network. They find each other by multicast on its loopback.
+Robot and estimator run in a separate network. Robot and estimator find each other by multicast on
+the loopback device.
 """
 
 import subprocess

@@ -104,7 +104,7 @@ def test_time_passes_pauses_and_starts_again(page: LivePage) -> None:
 
 
 def test_wrong_friction_misleads_paper2011_and_not_filtered_regression(page: LivePage) -> None:
-    """And only the method with an interval gets a band."""
+    """Only the method with an interval has a band in the plot."""
     errors = {}
     for method, claims in (("Paper2011", False), ("FilteredRegression", True)):
         page.page.run("joint.form.elements.method.value = METHODS[arguments[0]]", method)

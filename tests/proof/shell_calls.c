@@ -1,7 +1,7 @@
 /* Every call that an importer can make, in every state of an instance: a proof by induction.
  *
  * The invariant holds when an instance is created or restored, and behind each call if it held before
- * it. So it holds after any number of calls, in any order. The version of FMI is SH_FMI.
+ * it. The invariant therefore holds after any number of calls, in any order. The version of FMI is SH_FMI.
  */
 #include "fmi_calls.h"
 #include "shell_invariant.h"
@@ -165,7 +165,7 @@ static void every_call(sh_importer importer)
     //@ assert reached: \true;
 }
 
-/* The begin of the induction, and its end: what was created is freed, once. */
+/* The begin of the induction, and its end: each created instance is freed once. */
 static void free_created(sh_instance *created)
 {
     if (created != NULL) {

@@ -1,6 +1,4 @@
-/* In place of the equations that CasADi generated for a plant: they write any values to their
- * results.
- */
+/* In place of the equations that CasADi generated for a plant: they write any values to their results. */
 #include "plant_functions.h"
 #include "shell_importer.h"
 

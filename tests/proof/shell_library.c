@@ -1,9 +1,9 @@
 /* Replaces c/: its functions do everything that the functions of c/ may do. A state or parameters that they accept
- * carry a mark, and the functions that need it ask for it. Part 1 proves the functions themselves.
+ * carry a mark, and the functions that need it ask for it. Part 1 of the proof (tests/proof/library) covers the real
+ * functions.
  *
- * Marks: p->method is one of the methods only after sh_parameters_check; estimator->started is 0 or
- * 1 only after sh_estimator_start or sh_estimator_check. Both are necessary conditions of the real
- * ones.
+ * Marks: p->method is one of the methods only after sh_parameters_check; estimator->started is 0 or 1 only after
+ * sh_estimator_start or sh_estimator_check. Both marks are necessary conditions of the real functions.
  */
 #include "shell_importer.h"
 #include "sigmahat.h"

@@ -44,7 +44,7 @@ static void of_course(course here, sh_importer importer)
     //@ assert freed: state == \null;
 }
 
-/* A state of none of the courses. */
+/* A serialised state whose course does not exist. */
 static void of_no_course(unsigned state)
 {
     void *made = NULL;

@@ -30,7 +30,7 @@ TRIANGLES = re.findall(
 )
 """Functions that contracts.h stands for."""
 
-# A path of the check that refuses a state must stay apart from the one that accepts it.
+# Eva must keep the paths apart in which the check rejects and accepts a state.
 APART = (
     *("-eva-split-return", "full", "-eva-slevel-function"),
     "restored:9999,sh_estimator_check:9999,sh_filtered_regression_check_state:9999,are_columns:99,"

@@ -22,7 +22,7 @@ CONFIGURATIONS = (
     (("SH_REAL=double", "__GNUC__", "__SSE2__"), FOLDERS),
     (("SH_REAL=float",), ("c",)),
 )
-"""Macros and folders. The second one takes the other branch of c/pair.h, which is plain C."""
+"""Macros and folders. The second program uses the other branch of c/pair.h, which is plain C."""
 HEADERS = [*c_sources.FOLDERS, REPOSITORY / "fmu_src", REPOSITORY / "fmu_src" / "shell"]
 FMI_HEADERS = Path(fmpy.__file__).parent / "c-code"
 # A checker for each file, as one writes what all files say together for its first file only.
@@ -77,7 +77,7 @@ def ask(tree: Path, pattern: str, found: Findings, *script: str | Path) -> None:
 
 
 def findings(folder: Path, build: Path) -> Findings:
-    """The findings in all configurations. `folder` is for files that nobody needs later."""
+    """The findings in all configurations. The argument `folder` is a place for temporary files."""
     found: Findings = defaultdict(set)
     for index, (macros, names) in enumerate(CONFIGURATIONS):
         tree = folder / str(index)

@@ -69,7 +69,8 @@ def test_process_noise_leaves_information_above_zero(c: Library, data: st.DataOb
 @given(data=st.data())
 def test_motion_sign(c: Library, data: st.DataObject) -> None:
     """The sign is at most 1 while the motor goes on, and at most 2 if it reverses within a sample.
-    Else it is at most 1 more than the sum reported since the last count."""
+    Otherwise, the sign is at most 1 more than the sum of the signs since the last count.
+    """
     count, slow = data.draw(magnitudes(0, 1e12)), data.draw(magnitudes(1e-24, 1e12))
     motion = c.new("sh_motion_sign")
     c.lib.sh_motion_sign_start(motion, data.draw(signed))

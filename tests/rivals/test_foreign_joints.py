@@ -1,6 +1,6 @@
 """The joints in MuJoCo fit their parameters, and the logs fit the joints.
 
-The seeds of the comparison stay unused here: these are others.
+These seeds differ from the seeds of the comparison.
 """
 
 import math

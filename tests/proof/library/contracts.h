@@ -1,8 +1,9 @@
 /* Contracts of the functions that work on triangles. With them, a tick is analysed without the loops over all
- * entries, and for any numbers. Their bodies are analysed in information.c and ud_factor.c.
+ * entries, and for any numbers. The programs information.c and ud_factor.c of this folder analyse the replaced
+ * functions.
  *
- * Each \from names all that the requirements read: Eva uses the results of a caller again where what it
- * reads is the same.
+ * Each \from names all that the requirements read: Eva reuses the results of a function for calls that read the same
+ * values.
  *
  * The last two are about parameters that passed sh_parameters_check, which calls the same functions with them. There
  * are 1..SH_MAX_COLUMNS columns, and a curve rls.eta_0 if prior.tau_e is 0.

@@ -1,6 +1,6 @@
 /* The functions of information.c that contracts.h replaces, with their contracts, for SH_MAX_COLUMNS columns. Every
- * array is as short as possible, and every loop is unrolled. Behind
- * each array is a guard, which must be neither read nor written.
+ * array is as short as possible, and every loop is unrolled. Behind each array is a guard, which the functions must not
+ * read or write.
  */
 #include "anything.h"
 #include "contracts.h"
@@ -47,8 +47,8 @@ void columns(void)
     //@ assert guards: !\initialized(&b.guard_D[0]) && !\initialized(&b.guard_U[0]);
 }
 
-/* A number of columns that is smaller than the arrays allow, with rows that it has not: Eva does not
- * see that a row is one of them.
+/* A number of columns that is smaller than the arrays allow, with rows that it has not: Eva does not recognise that the
+ * row is one of the rows of the triangle.
  */
 void rows(void)
 {

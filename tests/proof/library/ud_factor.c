@@ -1,6 +1,6 @@
 /* The functions of ud_factor.c that contracts.h replaces, with their contracts, for SH_MAX_N SH_MAX_M parameters.
  * Every array is as short as possible, and every loop is unrolled.
- * Behind each array is a guard, which must be neither read nor written.
+ * Behind each array is a guard, which the functions must not read or write.
  */
 #include "anything.h"
 #include "contracts.h"
