@@ -7,19 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from bokeh.models import (
-    BoxAnnotation,
-    BoxZoomTool,
-    ColumnDataSource,
-    PanTool,
-    Range1d,
-    ResetTool,
-    SaveTool,
-    Span,
-    TeeHead,
-    WheelZoomTool,
-    Whisker,
-)
+from bokeh.models import BoxAnnotation, ColumnDataSource, Range1d, Span, TeeHead, Whisker
 from bokeh.plotting import figure
 from numpy.typing import NDArray
 
@@ -91,11 +79,10 @@ def _figure(panel: Panel, linked: Range1d) -> figure:
         y_axis_type="log" if panel.y_log else "linear",
         x_range=linked if panel.linked else Range1d(*_limits(xs, panel.x_log)),
         y_range=Range1d(*(panel.y_range or _y_limits(panel))),
-        tools=[PanTool(), BoxZoomTool(), WheelZoomTool(), ResetTool(), SaveTool()],
-        active_drag="auto",
+        tools="pan,box_zoom,wheel_zoom,reset,save",
+        active_drag="box_zoom",
         output_backend="canvas",
     )
-    plot.toolbar.active_drag = plot.select_one(BoxZoomTool)
     plot.toolbar.logo = None
     plot.axis.axis_label_text_font_style = "normal"
     plot.yaxis.axis_label_standoff = 4
