@@ -61,8 +61,27 @@ class Endpoints:
             raise self._cannot_listen(name, error.strerror or error) from error
 
     def replay(self, log: Path) -> Source:
-        """The source for a recorded log. Raises LogError if the log lacks a column."""
-        return _replay(open_log(log), self._session)
+        """The used columns of a recorded log, in real time. Raises LogError if one is missing."""
+        opened = open_log(log)
+        used: dict[str, tuple[float, list[str]]] = {}
+        for joint in self._session.joints:
+            for name, port in joint.ports.items():
+                time_column = joint.time_column(name)
+                # Rows without a time are a period of the estimator apart.
+                step = self._session.clocks[time_column].seconds if time_column else joint.T
+                columns = [port.port.column] if port.port.column else []
+                used.setdefault(time_column, (step, []))[1].extend(columns)
+        groups = [_rows(opened, name, *each) for name, each in used.items()]
+
+        def read(inbox: Inbox) -> None:
+            begin, first = time.monotonic(), None
+            for t, columns in heapq.merge(*groups, key=lambda each: each[0]):
+                first = t if first is None else first
+                time.sleep(max(begin + t - first - time.monotonic(), 0.0))
+                inbox.add(partial(dict, columns), arrival=round(1e9 * t))
+            inbox.add(_no_more)
+
+        return read
 
     def sink(self, name: str) -> Sink:
         """The sink of this name; for Foxglove, the layout is also written."""
@@ -150,29 +169,6 @@ def _lines(file: BinaryIO, inbox: Inbox, decoder: Decoder) -> None:
             inbox.add(partial(decoder.columns, line))
             while len(line) > LONGEST and not line.endswith(b"\n"):
                 line = file.readline(LONGEST + 1)
-
-
-def _replay(log: Log, session: Session) -> Source:
-    """The used columns of a log, in real time."""
-    used: dict[str, tuple[float, list[str]]] = {}
-    for joint in session.joints:
-        for name, port in joint.ports.items():
-            time_column = joint.time_column(name)
-            # Rows without a time are a period of the estimator apart.
-            step = session.clocks[time_column].seconds if time_column else joint.T
-            columns = [port.port.column] if port.port.column else []
-            used.setdefault(time_column, (step, []))[1].extend(columns)
-    groups = [_rows(log, name, *each) for name, each in used.items()]
-
-    def read(inbox: Inbox) -> None:
-        begin, first = time.monotonic(), None
-        for t, columns in heapq.merge(*groups, key=lambda each: each[0]):
-            first = t if first is None else first
-            time.sleep(max(begin + t - first - time.monotonic(), 0.0))
-            inbox.add(partial(dict, columns), arrival=round(1e9 * t))
-        inbox.add(_no_more)
-
-    return read
 
 
 def _rows(
