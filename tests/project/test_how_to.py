@@ -17,8 +17,6 @@ from controllers import run
 from plant_runs import run_plant
 from recorded_logs import REGRESSION, awas_log, write_log
 from sigmahat.cli import cli
-from sigmahat.fmi.master import simulate
-from sigmahat.paper.scenarios import scenario
 from sigmahat.runs.scenario import T
 
 REPOSITORY = Path(__file__).parents[2]
@@ -192,15 +190,3 @@ def test_fmpy_passes_zeros_to_the_first_tick_of_the_system_and_is_else_exact(
     ticks = sigmahat.Estimator({}).run(**measured)["sigma"]
     np.testing.assert_array_equal(system["estimator.sigma"], ticks)
     assert ticks.any()
-
-
-def test_the_system_as_it_is_gives_table_1(page: dict[str, Any]) -> None:
-    table1, steps = scenario("table1"), len(page["t"]) - 1
-    estimators = {"RESIDUAL": table1.estimators["RESIDUAL"]}
-    recording = simulate(table1.plant, estimators, T, steps)
-    plant, estimate = recording.plant["sigma"], recording.estimators["RESIDUAL"]["sigma"]
-    np.testing.assert_allclose(page["system"]["plant.sigma"][:steps], plant[1:], rtol=1e-10)
-    # A small difference remains after 1 s, because FMPy sets the inputs of the first tick to 0.
-    settled = slice(round(1.0 / T) + 1, steps)
-    found = page["system"]["estimator.sigma"]
-    np.testing.assert_allclose(found[settled], estimate[settled], rtol=1e-6)
