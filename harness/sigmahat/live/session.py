@@ -48,7 +48,7 @@ class _Recording:
         kinds = [(n, pa.int64() if whole else pa.float64()) for n, whole in columns.items()]
         self._writer = pq.ParquetWriter(path, pa.schema(kinds))
         self._thread = ThreadPoolExecutor(1)  # so that no sample waits for the disk
-        self._written: Future[None] | None = None
+        self._written: Future[Any] = self._thread.submit(dict)  # the last job, done at once
         self._rows, self._table = 0, np.empty(_ROWS, self._kinds)
 
     def add(self, row: Columns) -> None:
@@ -61,17 +61,13 @@ class _Recording:
     def close(self) -> None:
         self._flush()
         self._thread.shutdown()
-        self._wait()
+        self._written.result()
         self._writer.close()
 
     def _flush(self) -> None:
-        self._wait()
+        self._written.result()
         self._written = self._thread.submit(self._write, self._table[: self._rows])
         self._rows, self._table = 0, np.empty(_ROWS, self._kinds)
-
-    def _wait(self) -> None:
-        if self._written is not None:
-            self._written.result()
 
     def _write(self, table: NDArray[Any]) -> None:
         columns = {n: np.ascontiguousarray(table[n]) for n in self._missing}
