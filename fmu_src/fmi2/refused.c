@@ -8,25 +8,19 @@
 
 /* NOLINTBEGIN(misc-unused-parameters) */
 
-fmi2Status fmi2CancelStep(fmi2Component c)
-{
-    return (fmi2Status)sh_refuse_feature(c, "fmi2CancelStep", "steps that run asynchronously");
-}
+#define REFUSED(Name, missing, ...)                                                                \
+    fmi2Status fmi2##Name(__VA_ARGS__)                                                             \
+    {                                                                                              \
+        return (fmi2Status)sh_refuse_feature(c, "fmi2" #Name, missing);                            \
+    }
 
-fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
-                                        const fmi2Integer order[], fmi2Real value[])
-{
-    return (fmi2Status)sh_refuse_feature(c, "fmi2GetRealOutputDerivatives",
-                                         "derivatives of outputs (maxOutputDerivativeOrder is 0)");
-}
-
-fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference vUnknown_ref[],
-                                        size_t nUnknown, const fmi2ValueReference vKnown_ref[],
-                                        size_t nKnown, const fmi2Real dvKnown[],
-                                        fmi2Real dvUnknown[])
-{
-    return (fmi2Status)sh_refuse_feature(c, "fmi2GetDirectionalDerivative",
-                                         "directional derivatives");
-}
+REFUSED(CancelStep, "steps that run asynchronously", fmi2Component c)
+REFUSED(GetRealOutputDerivatives, "derivatives of outputs (maxOutputDerivativeOrder is 0)",
+        fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Integer order[],
+        fmi2Real value[])
+REFUSED(GetDirectionalDerivative, "directional derivatives", fmi2Component c,
+        const fmi2ValueReference vUnknown_ref[], size_t nUnknown,
+        const fmi2ValueReference vKnown_ref[], size_t nKnown, const fmi2Real dvKnown[],
+        fmi2Real dvUnknown[])
 
 /* NOLINTEND(misc-unused-parameters) */

@@ -10,71 +10,65 @@
 
 /* NOLINTBEGIN(misc-unused-parameters) */
 
-#define REFUSED(Name, missing)                                                                     \
-    fmi3Status fmi3##Name(fmi3Instance instance)                                                   \
+#define REFUSED(Name, missing, ...)                                                                \
+    fmi3Status fmi3##Name(__VA_ARGS__)                                                             \
     {                                                                                              \
         return (fmi3Status)sh_refuse_feature(instance, "fmi3" #Name, missing);                     \
     }
 
-#define REFUSED_WITH(Name, missing, ...)                                                           \
-    fmi3Status fmi3##Name(fmi3Instance instance, __VA_ARGS__)                                      \
-    {                                                                                              \
-        return (fmi3Status)sh_refuse_feature(instance, "fmi3" #Name, missing);                     \
-    }
+#define INSTANCE fmi3Instance instance
+#define REFERENCES INSTANCE, const fmi3ValueReference valueReferences[], size_t nValueReferences
 
-#define REFERENCES const fmi3ValueReference valueReferences[], size_t nValueReferences
+REFUSED(EnterEventMode, "event mode (hasEventMode is false)", INSTANCE)
+REFUSED(EnterStepMode, "event mode (hasEventMode is false)", INSTANCE)
+REFUSED(EvaluateDiscreteStates, "event mode (hasEventMode is false)", INSTANCE)
+REFUSED(UpdateDiscreteStates, "event mode (hasEventMode is false)", INSTANCE,
+        fmi3Boolean *discreteStatesNeedUpdate, fmi3Boolean *terminateSimulation,
+        fmi3Boolean *nominalsOfContinuousStatesChanged,
+        fmi3Boolean *valuesOfContinuousStatesChanged, fmi3Boolean *nextEventTimeDefined,
+        fmi3Float64 *nextEventTime)
 
-REFUSED(EnterEventMode, "event mode (hasEventMode is false)")
-REFUSED(EnterStepMode, "event mode (hasEventMode is false)")
-REFUSED(EvaluateDiscreteStates, "event mode (hasEventMode is false)")
-REFUSED_WITH(UpdateDiscreteStates, "event mode (hasEventMode is false)",
-             fmi3Boolean *discreteStatesNeedUpdate, fmi3Boolean *terminateSimulation,
-             fmi3Boolean *nominalsOfContinuousStatesChanged,
-             fmi3Boolean *valuesOfContinuousStatesChanged, fmi3Boolean *nextEventTimeDefined,
-             fmi3Float64 *nextEventTime)
+REFUSED(EnterConfigurationMode, "structural parameters", INSTANCE)
+REFUSED(ExitConfigurationMode, "structural parameters", INSTANCE)
 
-REFUSED(EnterConfigurationMode, "structural parameters")
-REFUSED(ExitConfigurationMode, "structural parameters")
+REFUSED(GetNumberOfVariableDependencies, "dependencies of single elements", INSTANCE,
+        fmi3ValueReference valueReference, size_t *nDependencies)
+REFUSED(GetVariableDependencies, "dependencies of single elements", INSTANCE,
+        fmi3ValueReference dependent, size_t elementIndicesOfDependent[],
+        fmi3ValueReference independents[], size_t elementIndicesOfIndependents[],
+        fmi3DependencyKind dependencyKinds[], size_t nDependencies)
 
-REFUSED_WITH(GetNumberOfVariableDependencies, "dependencies of single elements",
-             fmi3ValueReference valueReference, size_t *nDependencies)
-REFUSED_WITH(GetVariableDependencies, "dependencies of single elements",
-             fmi3ValueReference dependent, size_t elementIndicesOfDependent[],
-             fmi3ValueReference independents[], size_t elementIndicesOfIndependents[],
-             fmi3DependencyKind dependencyKinds[], size_t nDependencies)
+REFUSED(GetDirectionalDerivative, "directional derivatives", INSTANCE,
+        const fmi3ValueReference unknowns[], size_t nUnknowns, const fmi3ValueReference knowns[],
+        size_t nKnowns, const fmi3Float64 seed[], size_t nSeed, fmi3Float64 sensitivity[],
+        size_t nSensitivity)
+REFUSED(GetAdjointDerivative, "adjoint derivatives", INSTANCE, const fmi3ValueReference unknowns[],
+        size_t nUnknowns, const fmi3ValueReference knowns[], size_t nKnowns,
+        const fmi3Float64 seed[], size_t nSeed, fmi3Float64 sensitivity[], size_t nSensitivity)
+REFUSED(GetOutputDerivatives, "derivatives of outputs (maxOutputDerivativeOrder is 0)", REFERENCES,
+        const fmi3Int32 orders[], fmi3Float64 values[], size_t nValues)
 
-REFUSED_WITH(GetDirectionalDerivative, "directional derivatives",
-             const fmi3ValueReference unknowns[], size_t nUnknowns,
-             const fmi3ValueReference knowns[], size_t nKnowns, const fmi3Float64 seed[],
-             size_t nSeed, fmi3Float64 sensitivity[], size_t nSensitivity)
-REFUSED_WITH(GetAdjointDerivative, "adjoint derivatives", const fmi3ValueReference unknowns[],
-             size_t nUnknowns, const fmi3ValueReference knowns[], size_t nKnowns,
-             const fmi3Float64 seed[], size_t nSeed, fmi3Float64 sensitivity[], size_t nSensitivity)
-REFUSED_WITH(GetOutputDerivatives, "derivatives of outputs (maxOutputDerivativeOrder is 0)",
-             REFERENCES, const fmi3Int32 orders[], fmi3Float64 values[], size_t nValues)
+REFUSED(GetBinary, "variables of type Binary", REFERENCES, size_t valueSizes[], fmi3Binary values[],
+        size_t nValues)
+REFUSED(SetBinary, "variables of type Binary", REFERENCES, const size_t valueSizes[],
+        const fmi3Binary values[], size_t nValues)
 
-REFUSED_WITH(GetBinary, "variables of type Binary", REFERENCES, size_t valueSizes[],
-             fmi3Binary values[], size_t nValues)
-REFUSED_WITH(SetBinary, "variables of type Binary", REFERENCES, const size_t valueSizes[],
-             const fmi3Binary values[], size_t nValues)
-
-REFUSED_WITH(GetClock, "clocks", REFERENCES, fmi3Clock values[])
-REFUSED_WITH(SetClock, "clocks", REFERENCES, const fmi3Clock values[])
-REFUSED_WITH(GetIntervalDecimal, "clocks", REFERENCES, fmi3Float64 intervals[],
-             fmi3IntervalQualifier qualifiers[])
-REFUSED_WITH(GetIntervalFraction, "clocks", REFERENCES, fmi3UInt64 counters[],
-             fmi3UInt64 resolutions[], fmi3IntervalQualifier qualifiers[])
-REFUSED_WITH(GetShiftDecimal, "clocks", REFERENCES, fmi3Float64 shifts[])
-REFUSED_WITH(GetShiftFraction, "clocks", REFERENCES, fmi3UInt64 counters[],
-             fmi3UInt64 resolutions[])
-REFUSED_WITH(SetIntervalDecimal, "clocks", REFERENCES, const fmi3Float64 intervals[])
-REFUSED_WITH(SetIntervalFraction, "clocks", REFERENCES, const fmi3UInt64 counters[],
-             const fmi3UInt64 resolutions[])
-REFUSED_WITH(SetShiftDecimal, "clocks", REFERENCES, const fmi3Float64 shifts[])
-REFUSED_WITH(SetShiftFraction, "clocks", REFERENCES, const fmi3UInt64 counters[],
-             const fmi3UInt64 resolutions[])
-REFUSED_WITH(ActivateModelPartition, "clocks", fmi3ValueReference clockReference,
-             fmi3Float64 activationTime)
+REFUSED(GetClock, "clocks", REFERENCES, fmi3Clock values[])
+REFUSED(SetClock, "clocks", REFERENCES, const fmi3Clock values[])
+REFUSED(GetIntervalDecimal, "clocks", REFERENCES, fmi3Float64 intervals[],
+        fmi3IntervalQualifier qualifiers[])
+REFUSED(GetIntervalFraction, "clocks", REFERENCES, fmi3UInt64 counters[], fmi3UInt64 resolutions[],
+        fmi3IntervalQualifier qualifiers[])
+REFUSED(GetShiftDecimal, "clocks", REFERENCES, fmi3Float64 shifts[])
+REFUSED(GetShiftFraction, "clocks", REFERENCES, fmi3UInt64 counters[], fmi3UInt64 resolutions[])
+REFUSED(SetIntervalDecimal, "clocks", REFERENCES, const fmi3Float64 intervals[])
+REFUSED(SetIntervalFraction, "clocks", REFERENCES, const fmi3UInt64 counters[],
+        const fmi3UInt64 resolutions[])
+REFUSED(SetShiftDecimal, "clocks", REFERENCES, const fmi3Float64 shifts[])
+REFUSED(SetShiftFraction, "clocks", REFERENCES, const fmi3UInt64 counters[],
+        const fmi3UInt64 resolutions[])
+REFUSED(ActivateModelPartition, "clocks", INSTANCE, fmi3ValueReference clockReference,
+        fmi3Float64 activationTime)
 
 #define NO_INSTANCE(Kind, words, ...)                                                              \
     fmi3Instance fmi3Instantiate##Kind(fmi3String instanceName, fmi3String instantiationToken,     \
@@ -92,22 +86,22 @@ NO_INSTANCE(ScheduledExecution, "scheduled execution", fmi3LogMessageCallback lo
             fmi3ClockUpdateCallback clockUpdate, fmi3LockPreemptionCallback lockPreemption,
             fmi3UnlockPreemptionCallback unlockPreemption)
 
-REFUSED(EnterContinuousTimeMode, "model exchange")
-REFUSED_WITH(CompletedIntegratorStep, "model exchange",
-             fmi3Boolean noSetFMUStatePriorToCurrentPoint, fmi3Boolean *enterEventMode,
-             fmi3Boolean *terminateSimulation)
-REFUSED_WITH(SetTime, "model exchange", fmi3Float64 time)
-REFUSED_WITH(SetContinuousStates, "model exchange", const fmi3Float64 continuousStates[],
-             size_t nContinuousStates)
-REFUSED_WITH(GetContinuousStateDerivatives, "model exchange", fmi3Float64 derivatives[],
-             size_t nContinuousStates)
-REFUSED_WITH(GetEventIndicators, "model exchange", fmi3Float64 eventIndicators[],
-             size_t nEventIndicators)
-REFUSED_WITH(GetContinuousStates, "model exchange", fmi3Float64 continuousStates[],
-             size_t nContinuousStates)
-REFUSED_WITH(GetNominalsOfContinuousStates, "model exchange", fmi3Float64 nominals[],
-             size_t nContinuousStates)
-REFUSED_WITH(GetNumberOfEventIndicators, "model exchange", size_t *nEventIndicators)
-REFUSED_WITH(GetNumberOfContinuousStates, "model exchange", size_t *nContinuousStates)
+REFUSED(EnterContinuousTimeMode, "model exchange", INSTANCE)
+REFUSED(CompletedIntegratorStep, "model exchange", INSTANCE,
+        fmi3Boolean noSetFMUStatePriorToCurrentPoint, fmi3Boolean *enterEventMode,
+        fmi3Boolean *terminateSimulation)
+REFUSED(SetTime, "model exchange", INSTANCE, fmi3Float64 time)
+REFUSED(SetContinuousStates, "model exchange", INSTANCE, const fmi3Float64 continuousStates[],
+        size_t nContinuousStates)
+REFUSED(GetContinuousStateDerivatives, "model exchange", INSTANCE, fmi3Float64 derivatives[],
+        size_t nContinuousStates)
+REFUSED(GetEventIndicators, "model exchange", INSTANCE, fmi3Float64 eventIndicators[],
+        size_t nEventIndicators)
+REFUSED(GetContinuousStates, "model exchange", INSTANCE, fmi3Float64 continuousStates[],
+        size_t nContinuousStates)
+REFUSED(GetNominalsOfContinuousStates, "model exchange", INSTANCE, fmi3Float64 nominals[],
+        size_t nContinuousStates)
+REFUSED(GetNumberOfEventIndicators, "model exchange", INSTANCE, size_t *nEventIndicators)
+REFUSED(GetNumberOfContinuousStates, "model exchange", INSTANCE, size_t *nContinuousStates)
 
 /* NOLINTEND(misc-unused-parameters) */
