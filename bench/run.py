@@ -10,7 +10,7 @@ import numpy as np
 import subjects
 from report import Times, table
 from sigmahat.fmi.instance import installed
-from subjects import Array, Subject
+from subjects import Subject
 
 ROUNDS = 101
 SAMPLES = 10000  # one period of the torques
@@ -56,19 +56,6 @@ def measure(every: list[Subject], rounds: int) -> Times:
     return times
 
 
-def all_subjects(library: ctypes.CDLL, samples: int) -> list[Subject]:
-    """All subjects whose time is measured."""
-    z: Array = subjects.measurements(samples)
-    return [
-        *(s for n in subjects.SIZES for s in subjects.least_squares(library, n, samples // 5)),
-        *subjects.ticks(library, z),
-        *subjects.plant(samples),
-        *subjects.objects(z),
-        *subjects.whole(z),
-        subjects.table1(15 * samples // 10),
-    ]
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--build", type=Path, required=True, help="folder in which bench was built")
@@ -77,7 +64,16 @@ def main() -> None:
     arguments = parser.parse_args()
     library = ctypes.CDLL(str(arguments.build / "libsigmahat_bench.so"))
     verify(library)
-    every = all_subjects(library, 100 if arguments.check else SAMPLES)
+    samples = 100 if arguments.check else SAMPLES
+    z = subjects.measurements(samples)
+    every = [
+        *(s for n in subjects.SIZES for s in subjects.least_squares(library, n, samples // 5)),
+        *subjects.ticks(library, z),
+        *subjects.plant(samples),
+        *subjects.objects(z),
+        *subjects.whole(z),
+        subjects.table1(15 * samples // 10),
+    ]
     times = measure(every, 1 if arguments.check else ROUNDS)
     if arguments.check:
         print(f"{len(times)} subjects work")
