@@ -298,8 +298,7 @@ static void start_filtered_regression(sh_estimator *estimator, const sh_paramete
 
 /* ---- tick --------------------------------------------------------------------------------- */
 
-/* Returns 1 if the signals of a sample are so small that no computation overflows. Returns 0 also if a signal is not a
- * number.
+/* Returns 1 if the signals of a sample are finite numbers and so small that no computation overflows.
  */
 static int are_acceptable(const sh_joint_point *at, sh_real y, const sh_columns *columns)
 {
@@ -396,7 +395,7 @@ static void update_noise(sh_regression_state *state, const sh_parameters *p,
     sh_posterior_remove(now, N * now->weight, p->prior.B);
 }
 
-/* Updates the posterior with a complete row: steps 3 to 5 of the tick. Returns 0 if a number of the row is too large.
+/* Updates the posterior with a complete row: steps 3 to 5 of the tick. Returns 0 if the row is too large.
  */
 static int use_row(sh_regression_state *state, const sh_parameters *p, const sh_row_noise *noise)
 {
@@ -482,8 +481,7 @@ static int first_step(int tick, int ticks)
     return (SH_ROW_STEPS * tick + ticks - 1) / ticks;
 }
 
-/* Makes the steps of the last row that belong to this tick: all steps are distributed over the ticks until the next
- * row. Returns SH_NEW_*.
+/* Makes the steps of the last row in this tick. The ticks until the next row share all steps. Returns SH_NEW_*.
  */
 static int take_steps(sh_regression_state *state, const sh_parameters *p)
 {
@@ -501,8 +499,7 @@ static int take_steps(sh_regression_state *state, const sh_parameters *p)
     return news;
 }
 
-/* Waits until the filters have settled. A block that is not full is dropped, because the block would contain rows from
- * both sides of the gap.
+/* Waits until the filters have settled. An incomplete block is dropped, because a block must not contain a gap.
  */
 static void wait_until_settled(sh_regression_state *state)
 {
@@ -512,7 +509,7 @@ static void wait_until_settled(sh_regression_state *state)
     }
 }
 
-/* Resets the quantities that made the numbers of the last row too large, so that the next row is acceptable. Returns 0.
+/* Resets the quantities that made the last row too large, so that the next row is acceptable. Returns 0.
  */
 static int refuse(sh_regression_state *state, const sh_history *before)
 {

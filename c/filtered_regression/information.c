@@ -110,8 +110,7 @@ static void combine(sh_real *restrict row, sh_real *restrict x, int count, sh_re
     }
 }
 
-/* Combines the sample with two rows, one after the other. Each entry of the sample is then read and written only once
- * for both rows.
+/* Combines the sample with two rows. Each entry of the sample is read and written only once for both rows.
  */
 static void combine_two(sh_real *restrict first, sh_real *restrict second, sh_real *restrict x,
                         int count, const sh_real *xi, const sh_real *gain)

@@ -191,8 +191,7 @@ static int has_many_blocks(const sh_regression_state *state)
  *     kappa^2 = max(q, q_recent, 1 + (q - t) max(1, N / 5))  if q > t, else max(1, q, q_recent) .
  *
  * A misfit is a function of the state and repeats with the motion, so the part q - t does not average out over N
- * blocks. With few blocks, q is the sum divided by N. With fewer than SH_FEW_BLOCKS blocks, misfit and variance factor
- * do not change.
+ * blocks. With few blocks, q is the sum divided by N. With fewer than SH_FEW_BLOCKS blocks, nothing is computed.
  */
 void sh_misfit_judge(sh_regression_state *state, const sh_parameters *p)
 {
@@ -294,8 +293,7 @@ static void forget_data(sh_regression_state *state, const sh_parameters *p, sh_r
 }
 
 /* P += drift time / (v'v + R) v v'. The vector v contains the columns of the curve in the last row, and R is the
- * variance of this row. The drift reduces the information along v, and the sum `weights` for errors of phi by the same
- * factor.
+ * variance of this row. The drift reduces the information along v and the sum `weights` by the same factor.
  */
 static void let_curve_drift(sh_regression_state *state, const sh_parameters *p, sh_real time)
 {
@@ -315,8 +313,7 @@ static void let_curve_drift(sh_regression_state *state, const sh_parameters *p, 
     }
 }
 
-/* The time of forgetting is the duration of the blocks, so no data are forgotten at rest. Data are forgotten only after
- * there are many blocks.
+/* The time of forgetting is the duration of the blocks, so no data are forgotten at rest or with few blocks.
  */
 void sh_forget(sh_regression_state *state, const sh_parameters *p, sh_real time)
 {
