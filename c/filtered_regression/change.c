@@ -50,9 +50,7 @@ static void begin_friction(sh_regression_state *state, const sh_parameters *p)
     }
 }
 
-/* Adds process noise of variance 1, the variance of the prior, to one column in each row. Step 0 prepares a sample with
- * negative weight, and step 1 takes this sample.
- */
+/* Adds process noise of variance 1 to one column in each row: step 0 prepares a sample, and step 1 takes the sample. */
 int sh_change_widens_friction(sh_regression_state *state, int step)
 {
     sh_information *const blocks = &state->blocks.drifting;
@@ -72,9 +70,7 @@ int sh_change_widens_friction(sh_regression_state *state, int step)
     return 1;
 }
 
-/* Ends hypothesis 2 without a change. If other friction explains the blocks clearly better, the matrix `drifting`
- * stays, because the blocks may still show that friction drifts.
- */
+/* Ends hypothesis 2 without a change. If other friction is clearly better, friction may drift: `drifting` stays. */
 static void end_friction(sh_regression_state *state)
 {
     sh_change *change = &state->change;
@@ -140,8 +136,7 @@ static void decide(sh_regression_state *state, const sh_parameters *p)
     }
 }
 
-/* Returns the mean, at least 1, after one more value. The value counts as at most `most` times the mean.
- */
+/* Returns the mean, at least 1, after one more value. The value counts as at most `most` times the mean. */
 static sh_real usual(sh_real mean, sh_real value, sh_real most, sh_real blocks)
 {
     return sh_fmax(mean + (sh_fmin(value, most * mean) - mean) / blocks, 1);

@@ -51,8 +51,8 @@ int sh_has_nominal_curve(const sh_parameters *p)
 
 /* ---- the table --------------------------------------------------------------------------- */
 
-/* Units of the std deviations in sh_parameters.prior. IF_DRY is 1 if the motor has dry friction, and IF_CURVE is 1 if
- * there is a curve rls.eta_0; otherwise, the units are 0.
+/* Units of std deviations in sh_parameters.prior. IF_DRY is 0 without dry friction, and IF_CURVE without rls.eta_0;
+ * else 1.
  */
 enum { ONE, TAU_E, K_0, TAU_C, IF_DRY, IF_CURVE };
 

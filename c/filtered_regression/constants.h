@@ -6,8 +6,7 @@
 
 /* ---- filters, signals.c ------------------------------------------------------------------ */
 
-/* Largest corner frequency divided by W_c of point 1 [1]. Above 2, the noise of y is not white.
- */
+/* Largest corner frequency divided by W_c of point 1 [1]. Above 2, the noise of y is not white. */
 #define SH_LARGEST_CORNER ((sh_real)1.42)
 /* Number of time constants 1/w after which the start of a filter counts as decayed [1]: 5e-4 of the start are left. */
 #define SH_FORGOTTEN ((sh_real)12)
@@ -23,19 +22,16 @@
 
 /* ---- columns, columns.c ------------------------------------------------------------------ */
 
-/* Half widths of dead zones and hysteresis, divided by range.phi [1]. One of the three is near any width.
- */
+/* Half widths of dead zones and hysteresis, divided by range.phi [1]. One of the three is near any width. */
 #define SH_DEAD_ZONES {(sh_real)0.01, (sh_real)0.04, (sh_real)0.16}
 #define SH_HYSTERESES {(sh_real)0.005, (sh_real)0.02, (sh_real)0.08}
-/* Share of the covered range above which a half width looks like the spring [1]. Half this share doubles the error.
- */
+/* Share of the covered range above which a half width looks like the spring [1]. Half this share doubles the error. */
 #define SH_LOOKS_LIKE_SPRING ((sh_real)0.25)
 /* Stiffness within the widest dead zone divided by the stiffness outside [1]. Below this ratio, the zone is a gap and
  * no part of sigma; otherwise, the zone is a knee. Harmonic drives have 1/2.
  */
 #define SH_GAP ((sh_real)0.3)
-/* Deformation at a possible knee divided by range.phi [1]. Harmonic drives have a knee at 1/3 of the largest torque.
- */
+/* Deformation at a possible knee divided by range.phi [1]. Harmonic drives have a knee at 1/3 of the largest torque. */
 #define SH_POSSIBLE_KNEE ((sh_real)0.35)
 /* Error of the deformation at a knee, divided by range.phi [1]: `sigmahat identify` finds this deformation to 0.01. */
 #define SH_PLACE_OF_KNEE ((sh_real)0.02)
@@ -52,17 +48,14 @@
  * wide.
  */
 #define SH_EXCESS ((sh_real)0.3)
-/* Share of the rounding variance count^2/12 that fourth differences do not show [1]: mean for 1 to 100 counts.
- */
+/* Share of the rounding variance count^2/12 that fourth differences do not show [1]: mean for 1 to 100 counts. */
 #define SH_ROUNDING_IS_NOT_WHITE ((sh_real)0.056)
 /* Time constant of the measured noise [s]. */
 #define SH_NOISE_TIME ((sh_real)0.1)
 /* Number of std deviations above which the first rows contradict the assumption that the motor is at rest [1]. */
 #define SH_AT_REST ((sh_real)5)
 
-/* Position errors of phi from encoder harmonics and the gear, divided by the once-per-turn error of the link encoder
- * [1]. With 0.025, the estimate of stiff joints with a free inertia is confident and wrong.
- */
+/* Error of phi from encoder harmonics and gear, divided by the once-per-turn error of the link encoder [1]. */
 #define SH_HARMONICS ((sh_real)0.035)
 /* Largest change of the stiffness by these position errors, in std deviations of the stiffness [1]. */
 #define SH_LARGEST_PULL ((sh_real)2)
@@ -73,13 +66,11 @@
 #define SH_SPREAD_OF_SQUARE ((sh_real)6)
 /* Relative error of the information that is removed as noise [1]: the rounding error repeats with the motion. */
 #define SH_REMOVAL_ERROR ((sh_real)0.05)
-/* Largest share of torque noise that passes through the column of the motor torque [1]: ten times expected friction.
- */
+/* Largest share of torque noise that passes through the column of the motor torque [1]: ten times expected friction. */
 #define SH_LARGEST_RETURN ((sh_real)0.5)
 /* Relative error of the variance of the torque noise [1]: noise.tau is known to 10 %. */
 #define SH_TORQUE_NOISE_ERROR ((sh_real)0.2)
-/* Least share of the information after the removal of noise [1]. A smaller share would be a rounding error in float.
- */
+/* Least share of the information after the removal of noise [1]. A smaller share would be a rounding error in float. */
 #define SH_LEAST_REST ((sh_real)1e-3)
 
 /* ---- misfit and forgetting, misfit.c ----------------------------------------------------- */
@@ -116,13 +107,12 @@
  * an industrial robot, with other friction, makes the estimator forget the first run.
  */
 #define SH_FAR_FROM_USUAL ((sh_real)3)
-/* Factor by which data are forgotten faster if the recent blocks agree with each other [1]: the joint has changed.
- */
+/* Factor by which data are forgotten faster if the recent blocks agree with each other [1]: the joint has changed. */
 #define SH_FASTER ((sh_real)5)
 /* Process noise of drifting friction, divided by the variance of the friction's prior [1/s]. */
 #define SH_FRICTION_DRIFT ((sh_real)1e-3)
-/* Ratio of the residuals with drifting friction and with constant friction [1]. Below the first number, friction counts
- * as drifting, and above the second number as constant.
+/* Residual with drifting friction divided by residual with constant friction, below and above which friction drifts or
+ * not [1].
  */
 #define SH_DRIFT_BEGINS ((sh_real)0.8)
 #define SH_DRIFT_ENDS ((sh_real)0.95)
@@ -148,8 +138,7 @@
  */
 #define SH_CLEARLY_BETTER ((sh_real)25)
 #define SH_BLOCKS_TO_DECIDE ((sh_real)20)
-/* Squared error, in usual errors, above which a block contradicts the changed spring [1]: 3.5 std deviations.
- */
+/* Squared error, in usual errors, above which a block contradicts the changed spring [1]: 3.5 std deviations. */
 #define SH_CONTRADICTS ((sh_real)12.5)
 /* Number of blocks in the mean that is the usual squared error, and largest value of one block in this mean, in usual
  * errors [1]. With these numbers, a change is found before its error becomes the usual error.
@@ -170,7 +159,7 @@
 /* ---- refits and choice of columns, refit.c ----------------------------------------------- */
 
 /* Pause between two refits, divided by the duration of the counted blocks [1]. In 1 % more time, the estimate can
- * hardly change. The number is no simple ratio of blocks and rows, so that no rounding error decides the comparison.
+ * hardly change. The number is no simple ratio of blocks and rows, so that rounding errors have no effect.
  */
 #define SH_REFIT_PAUSE ((sh_real)0.0101)
 /* Duration of a row for each step of a refit in one step of the row [s], and largest number of these steps [1]. A row
@@ -183,8 +172,7 @@
  * confident and over 20 % wrong for 0.42 % of the time. With 10 or 20, the share was 0.54 or 0.47 %.
  */
 #define SH_FIRST_TRIAL ((sh_real)15)
-/* Pause between two refits before groups are tried [s]. A refit removes noise (detail 14) and computes the misfit.
- */
+/* Pause between two refits before groups are tried [s]. A refit removes noise (detail 14) and computes the misfit. */
 #define SH_FIRST_PAUSE ((sh_real)0.2)
 /* A group of columns is used if it increases the log evidence by the first number plus the second number for each block
  * [1]. Such a group reduces the variance of the error by a tenth. The limit is necessary, because rounding of a
@@ -204,8 +192,7 @@
  */
 #define SH_LARGEST_POWER ((sh_real)32)
 #define SH_LEAST_LIMIT ((sh_real)2)
-/* Deviation of a motor parameter above which the estimate is in doubt, in std deviations of the prior [1].
- */
+/* Deviation of a motor parameter above which the estimate is in doubt, in std deviations of the prior [1]. */
 #define SH_OUTSIDE_PRIOR ((sh_real)3)
 /* Distance of viscous friction below 0 from which the estimate is in doubt, in std deviations [1]. Such a friction
  * shows that the encoders are read at different times. Of 40 simulated logs, only the eight with a late encoder had

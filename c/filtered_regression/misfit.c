@@ -1,6 +1,4 @@
-/* Misfit (point 7): prediction errors that no column explains. The misfit is computed from blocks of samples. Data that
- * contradict the model are forgotten.
- */
+/* Misfit (point 7): prediction errors of blocks of samples that no column explains, and forgetting of such data. */
 #include <string.h>
 
 #include "constants.h"
@@ -72,9 +70,7 @@ static void count_block(sh_regression_state *state)
     }
 }
 
-/* Updates the information by the mean row of a block [size: SH_MAX_ROW], or only predicts the row. Returns the squared
- * prediction error divided by its variance [1].
- */
+/* Takes or only predicts the mean row of a block [size: SH_MAX_ROW]. Returns the squared error / its variance [1]. */
 static sh_real take_block(sh_information *a, const sh_real *mean, sh_real w, int only_predicts)
 {
     sh_real x[SH_MAX_ROW], error;
@@ -220,9 +216,7 @@ void sh_misfit_judge(sh_regression_state *state, const sh_parameters *p)
 
 /* ---- drift of friction, detail 10 -------------------------------------------------------- */
 
-/* Decides by the residuals of both regressions whether friction drifts. There is no decision while the second
- * regression tests the hypothesis of other friction.
- */
+/* Decides by the residuals of both regressions whether friction drifts, except during a test of other friction. */
 static void judge_drift(sh_regression_state *state)
 {
     const sh_blocks *blocks = &state->blocks;
@@ -313,8 +307,7 @@ static void let_curve_drift(sh_regression_state *state, const sh_parameters *p, 
     }
 }
 
-/* The time of forgetting is the duration of the blocks, so no data are forgotten at rest or with few blocks.
- */
+/* The time of forgetting is the duration of the blocks, so no data are forgotten at rest or with few blocks. */
 void sh_forget(sh_regression_state *state, const sh_parameters *p, sh_real time)
 {
     sh_blocks *blocks = &state->blocks;

@@ -3,8 +3,7 @@
 #include "regression.h"
 #include "state_variable_filter.h"
 
-/* Returns the sum of the squared counts of both encoders [rad2], which is 12 times the rounding variance of phi.
- */
+/* Returns the sum of the squared counts of both encoders [rad2], which is 12 times the rounding variance of phi. */
 static sh_real counts_squared(const sh_signals *signals)
 {
     return sh_square(signals->count) + sh_square(signals->count_q);

@@ -51,8 +51,7 @@ static int choose_columns(const sh_regression_state *state, const sh_parameters 
     return size;
 }
 
-/* Starts a refit. The weight of the data is 1 / kappa^2, or in a trial 1 / max(1, q, q_recent).
- */
+/* Starts a refit. The weight of the data is 1 / kappa^2, or in a trial 1 / max(1, q, q_recent). */
 void sh_refit_begin(sh_regression_state *state, const sh_parameters *p)
 {
     sh_refit *refit = &state->refit;
@@ -114,8 +113,7 @@ static sh_real gain_of_evidence(const sh_regression_state *state)
     return gain;
 }
 
-/* A group is used above a log evidence of 3 + 0.05 N, and no longer below 0.025 N; knees 3 + 0.01 N, and 0.005 N.
- */
+/* A group is used above a log evidence of 3 + 0.05 N, and no longer below 0.025 N; knees 3 + 0.01 N, and 0.005 N. */
 static void decide_about_group(sh_regression_state *state)
 {
     sh_refit *refit = &state->refit;

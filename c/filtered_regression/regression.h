@@ -113,8 +113,7 @@ int sh_columns_place(const sh_columns *columns, int kind);
 /* Returns 1 if the deformations so far are large enough to distinguish column i from the spring. */
 int sh_column_is_distinct(const sh_regression_state *state, const sh_parameters *p, int i);
 
-/* Sets the point from positions [rad] and set-point [1]. The point keeps the pointer `stop` [size: SH_WIDTHS].
- */
+/* Sets the point from positions [rad] and set-point [1]. The point keeps the pointer `stop` [size: SH_WIDTHS]. */
 void sh_joint_point_at(sh_joint_point *point, const sh_columns *columns, const sh_parameters *p,
                        sh_real theta, sh_real q, sh_real phi, sh_real set_point,
                        const sh_real *stop);
@@ -145,8 +144,7 @@ sh_real sh_columns_remove_noise(const sh_regression_state *state, const sh_row_n
 
 /* ---- motion_sign.c: detail 3 ------------------------------------------------------------- */
 
-/* Starts the direction of motion at a position [rad]. The direction is unknown until the position changes.
- */
+/* Starts the direction of motion at a position [rad]. The direction is unknown until the position changes. */
 void sh_motion_sign_start(sh_motion_sign *motion, sh_real position);
 
 /* Updates the direction of motion by the next position [rad].
@@ -170,16 +168,13 @@ void sh_signals_take(sh_regression_state *state, const sh_parameters *p, const s
 
 /* ---- noise.c ----------------------------------------------------------------------------- */
 
-/* Returns the noise variance of theta in the last sample [rad2], and updates the mean of this variance.
- */
+/* Returns the noise variance of theta in the last sample [rad2], and updates the mean of this variance. */
 sh_real sh_noise_watch_theta(sh_regression_state *state, const sh_parameters *p);
 
 /* Detail 4: returns the variance of a row. The noise of theta is estimated from the last samples. */
 sh_row_noise sh_noise_of_row(const sh_regression_state *state, const sh_parameters *p);
 
-/* Return R times the information of a row that is only rounding noise: about sigma (point 5) [rad2], and about b
- * (detail 7) [(N.m)2].
- */
+/* R times the false information in a row by rounding: about sigma (point 5) [rad2], about b (detail 7) [(N.m)2]. */
 sh_real sh_noise_of_deformation(const sh_signals *signals);
 sh_real sh_noise_of_inertia(const sh_regression_state *state, const sh_parameters *p);
 
@@ -224,16 +219,13 @@ static inline int sh_block_is_full(const sh_blocks *blocks)
     return blocks->rows >= blocks->length;
 }
 
-/* Makes step 0..3 after a row. If the block is full, each step updates one regression by the mean row of the block.
- */
+/* Makes step 0..3 after a row. If the block is full, each step updates one regression by the mean row of the block. */
 void sh_blocks_end(sh_regression_state *state, const sh_parameters *p, int step);
 
 /* Drops the samples of the present block if the next samples do not follow without a gap. */
 void sh_blocks_interrupt(sh_blocks *blocks);
 
-/* Detail 8: the first function computes the misfit of the recent blocks with the estimate beta. The second function
- * sets misfit and variance_factor from all blocks.
- */
+/* Detail 8: the two functions compute the misfit of the recent blocks, and misfit and variance_factor of all blocks. */
 void sh_misfit_judge_recent(sh_regression_state *state, const sh_parameters *p);
 void sh_misfit_judge(sh_regression_state *state, const sh_parameters *p);
 
@@ -258,8 +250,7 @@ void sh_change_start(sh_regression_state *state);
  */
 int sh_change_begins_anew(sh_regression_state *state, sh_real error);
 
-/* Compares three hypotheses by squared errors divided by variances: no change, another spring, other friction.
- */
+/* Compares three hypotheses by squared errors divided by variances: no change, another spring, other friction. */
 void sh_change_judge(sh_regression_state *state, const sh_parameters *p, sh_real before,
                      sh_real spring, sh_real friction);
 
@@ -285,13 +276,10 @@ void sh_refit_begin(sh_regression_state *state, const sh_parameters *p);
 /* Updates the data of all samples by the newest row. */
 void sh_data_take(sh_regression_state *state);
 
-/* After sh_data_take, updates the posterior of a refit by the remaining part of the newest row.
- */
+/* After sh_data_take, updates the posterior of a refit by the remaining part of the newest row. */
 void sh_refit_take(sh_regression_state *state);
 
-/* Makes one step of a refit: reads a row of the data of all samples, or two short rows, or does the next work after the
- * last row. Returns SH_NEW_*.
- */
+/* Makes one step of a refit: reads one or two rows of the data, or makes the next end step. Returns SH_NEW_*. */
 int sh_refit_advance(sh_regression_state *state, const sh_parameters *p);
 
 #endif

@@ -133,8 +133,7 @@ typedef struct {
     sh_column column[SH_MAX_COLUMNS];
 } sh_columns;
 
-/* Signals of the filters. Signals before SH_FILTER_NOMINAL start as if always constant; the others start at 0.
- */
+/* Signals of the filters. Signals before SH_FILTER_NOMINAL start as if always constant; the others start at 0. */
 enum {
     SH_FILTER_THETA,
     SH_FILTER_PHI,     /* deformation */
@@ -219,8 +218,7 @@ typedef struct {
     sh_real gain;        /* part in the right-hand side SH_RIGHT_GAIN [1] */
 } sh_column_noise;
 
-/* Posterior from the prior and the data, weighted by the misfit. A posterior has its own order of the columns.
- */
+/* Posterior from the prior and the data, weighted by the misfit. A posterior has its own order of the columns. */
 typedef struct {
     sh_information information;
     short column[SH_MAX_COLUMNS]; /* which column of the data each of its own is */
