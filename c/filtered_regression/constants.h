@@ -28,7 +28,7 @@
 /* Share of the covered range above which a half width looks like the spring [1]. Half this share doubles the error. */
 #define SH_LOOKS_LIKE_SPRING ((sh_real)0.25)
 /* Stiffness within the widest dead zone divided by the stiffness outside [1]. Below this ratio, the zone is a gap and
- * no part of sigma; otherwise, the zone is a knee. Harmonic drives have 1/2.
+ * no part of sigma; otherwise, the zone is a knee. A knee of harmonic drives has the ratio 0.5.
  */
 #define SH_GAP ((sh_real)0.3)
 /* Deformation at a possible knee divided by range.phi [1]. Harmonic drives have a knee at 1/3 of the largest torque. */
@@ -55,7 +55,9 @@
 /* Number of std deviations above which the first rows contradict the assumption that the motor is at rest [1]. */
 #define SH_AT_REST ((sh_real)5)
 
-/* Error of phi from encoder harmonics and gear, divided by the once-per-turn error of the link encoder [1]. */
+/* Error of phi from encoder harmonics and gear, divided by the once-per-turn error of the link encoder [1]. With 0.025,
+ * the estimate of a stiff joint with a free inertia is confident and wrong.
+ */
 #define SH_HARMONICS ((sh_real)0.035)
 /* Largest change of the stiffness by these position errors, in std deviations of the stiffness [1]. */
 #define SH_LARGEST_PULL ((sh_real)2)
@@ -111,8 +113,8 @@
 #define SH_FASTER ((sh_real)5)
 /* Process noise of drifting friction, divided by the variance of the friction's prior [1/s]. */
 #define SH_FRICTION_DRIFT ((sh_real)1e-3)
-/* Residual with drifting friction divided by residual with constant friction, below and above which friction drifts or
- * not [1].
+/* Residual with drifting friction divided by the residual with constant friction [1]. Friction counts as drifting below
+ * the first ratio, and as constant above the second ratio.
  */
 #define SH_DRIFT_BEGINS ((sh_real)0.8)
 #define SH_DRIFT_ENDS ((sh_real)0.95)
@@ -188,7 +190,8 @@
 
 /* ---- what is reported, filtered_regression.c --------------------------------------------- */
 
-/* For x = |phi| / range.phi and the highest exponent e, limits of x^e and x beyond which no estimate is confident [1].
+/* Limits of x^e and of x for x = |phi| / range.phi and the highest exponent e [1]. Beyond both limits, the estimate is
+ * not confident.
  */
 #define SH_LARGEST_POWER ((sh_real)32)
 #define SH_LEAST_LIMIT ((sh_real)2)

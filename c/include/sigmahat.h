@@ -81,7 +81,7 @@ enum {
     SH_RLS_CONSTANT_FACTOR = 3 /* constant a in (25) */
 };
 
-/* Reasons why the estimate is not confident. Of several reasons, the library reports the last one of this list. */
+/* Reasons why the estimate is not confident. The library reports the last reason of this list. */
 enum {
     SH_DOUBT_NONE = 1,           /* it is confident */
     SH_DOUBT_NO_CLAIM,           /* the method computes no uncertainty that contains all errors */
