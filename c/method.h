@@ -26,8 +26,7 @@ typedef struct {
     int (*check)(const sh_parameters *p, sh_violation *violation);
 
     /* Starts the state of the method in an estimator that is zero. On entry, estimate contains only the curve
-     * rls.eta_0. The function adds the uncertainty of this curve at phi = 0 and theta_c = 0, the motor data, misfit and
-     * doubt.
+     * rls.eta_0. The function adds the uncertainty at phi = 0 and theta_c = 0, motor data, misfit and doubt.
      */
     void (*start)(sh_estimator *estimator, const sh_parameters *p, sh_estimate *estimate);
 

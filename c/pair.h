@@ -109,9 +109,7 @@ static inline sh_pair sh_pair_both(sh_real value)
     return sh_pair_of(value, value);
 }
 
-/* ab = a' b and ac = a' c for a, b, c [size: size]. Even and odd entries have separate sums, so that the processor can
- * compute both sums in parallel.
- */
+/* ab = a' b and ac = a' c for a, b, c [size: size]. Even and odd entries have separate, parallel sums. */
 static inline void sh_scalar_products(const sh_real *a, const sh_real *b, const sh_real *c,
                                       int size, sh_real *ab, sh_real *ac)
 {

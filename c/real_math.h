@@ -32,9 +32,7 @@ static inline sh_real sh_square(sh_real x)
 
 #define SH_PI 3.14159265358979323846
 
-/* A large number whose product with any number of practical size does not overflow. In double precision, the square of
- * SH_LARGE does not overflow, either.
- */
+/* A large number whose product with any practical number does not overflow; in double precision also its square. */
 #define SH_LARGE SH_FOR(SH_REAL, 1e150, 1e30f)
 
 /* Limit of an output that would overflow. */

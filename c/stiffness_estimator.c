@@ -24,9 +24,7 @@ static sh_real polynomial(const sh_parameters *p, int i, sh_real set_point)
     return sum;
 }
 
-/* Sets the start estimate from the curve rls.eta_0 at phi = 0. At phi = 0, the torque is the power 0 of phi, and the
- * stiffness is the power 1.
- */
+/* Sets the start estimate: the curve rls.eta_0, and torque and stiffness of this curve at phi = 0. */
 static void start_curve(const sh_parameters *p, sh_real set_point, sh_estimate *estimate)
 {
     const int linear = sh_torque_basis_linear(p->rls.symmetric);

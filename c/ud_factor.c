@@ -33,9 +33,7 @@ enum { TWO_COLUMNS = 2 * SH_PANEL, THREE_COLUMNS = 3 * SH_PANEL }; /* of a panel
 /* Below this limit, the next updates may let an entry of D underflow. */
 static const sh_real FAR_ABOVE_UNDERFLOW = SH_FOR(SH_REAL, 1e-290, 1e-30f);
 
-/* Returns the index of entry (i, j) of U in memory, for i <= j. The panel of row i begins at row and column i - i %
- * SH_PANEL.
- */
+/* Returns the index of U(i, j) in memory, i <= j. The panel of row i begins at row and column i - i % SH_PANEL. */
 static int place(int size, int i, int j)
 {
     const int row = i % SH_PANEL, first = i - row;

@@ -50,9 +50,7 @@ static void begin_friction(sh_regression_state *state, const sh_parameters *p)
     }
 }
 
-/* Adds process noise of variance 1, the variance of the prior, to one column in each row. Step 0 prepares a sample with
- * negative weight, and step 1 takes this sample.
- */
+/* Adds process noise of variance 1 to one column in each row: step 0 prepares a sample, and step 1 takes the sample. */
 int sh_change_widens_friction(sh_regression_state *state, int step)
 {
     sh_information *const blocks = &state->blocks.drifting;
@@ -72,9 +70,7 @@ int sh_change_widens_friction(sh_regression_state *state, int step)
     return 1;
 }
 
-/* Ends hypothesis 2 without a change. If other friction explains the blocks clearly better, the matrix `drifting`
- * stays, because the blocks may still show that friction drifts.
- */
+/* Ends hypothesis 2 without a change. If other friction is clearly better, friction may drift: `drifting` stays. */
 static void end_friction(sh_regression_state *state)
 {
     sh_change *change = &state->change;
@@ -102,8 +98,7 @@ int sh_change_begins_anew(sh_regression_state *state, sh_real error)
 /* Adopts the hypothesis in blocks.drifting: its matrix replaces the blocks and the data of all samples. The data of all
  * samples must be replaced, because their samples after t contradict their information about the motor. The next
  * posterior contains the prior twice, because the blocks also contain the prior, but the blocks soon outweigh the
- * prior. The sums that describe the noise of single samples begin at 0, because the mean row of a block hardly contains
- * this noise.
+ * prior. The sums that describe the noise of single samples begin at 0, because blocks hardly contain this noise.
  */
 static void adopt(sh_regression_state *state, const sh_parameters *p)
 {
@@ -125,8 +120,7 @@ static void adopt(sh_regression_state *state, const sh_parameters *p)
     begin(state);
 }
 
-/* Adopts hypothesis 1 if the blocks prefer hypothesis 1 to hypothesis 2 clearly, or at all after SH_BLOCKS_TO_DECIDE
- * blocks.
+/* Adopts hypothesis 1 if hypothesis 1 is clearly better than hypothesis 2, or better after SH_BLOCKS_TO_DECIDE blocks.
  */
 static void decide(sh_regression_state *state, const sh_parameters *p)
 {
@@ -142,9 +136,7 @@ static void decide(sh_regression_state *state, const sh_parameters *p)
     }
 }
 
-/* Returns the mean of `blocks` values after one more value, at least 1. A value above `most` times the mean counts as
- * `most` times the mean.
- */
+/* Returns the mean, at least 1, after one more value. The value counts as at most `most` times the mean. */
 static sh_real usual(sh_real mean, sh_real value, sh_real most, sh_real blocks)
 {
     return sh_fmax(mean + (sh_fmin(value, most * mean) - mean) / blocks, 1);

@@ -51,16 +51,15 @@ int sh_has_nominal_curve(const sh_parameters *p)
 
 /* ---- the table --------------------------------------------------------------------------- */
 
-/* Units of the std deviations in sh_parameters.prior. IF_DRY is 1 if the motor has dry friction, and IF_CURVE is 1 if
- * there is a curve rls.eta_0; otherwise, the units are 0.
+/* Units of std deviations in sh_parameters.prior. IF_DRY is 0 without dry friction, and IF_CURVE without rls.eta_0;
+ * else 1.
  */
 enum { ONE, TAU_E, K_0, TAU_C, IF_DRY, IF_CURVE };
 
 #define PRIOR(member) (int)offsetof(sh_parameters, prior.member)
 #define POWER (SH_IS_CURVE | SH_IS_POWER)
 
-/* Each column before DAMPING has a filter of its own, whose input is computed in signal_of. The entries of the other
- * columns are computed in entry_of.
+/* A column before DAMPING is the output of a filter with the input signal_of. Other columns are computed in entry_of.
  */
 const sh_column_kind sh_column_kinds[SH_COLUMN_KINDS] = {
     [SH_COLUMN_POWER] = {PRIOR(tau_e), ONE, 0, POWER | SH_IS_EQUATION},

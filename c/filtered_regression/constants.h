@@ -6,9 +6,7 @@
 
 /* ---- filters, signals.c ------------------------------------------------------------------ */
 
-/* Largest corner frequency divided by W_c of point 1 [1]: 1 and 2 give nearly the same results; above 2, the noise of y
- * is not white.
- */
+/* Largest corner frequency divided by W_c of point 1 [1]. Above 2, the noise of y is not white. */
 #define SH_LARGEST_CORNER ((sh_real)1.42)
 /* Number of time constants 1/w after which the start of a filter counts as decayed [1]: 5e-4 of the start are left. */
 #define SH_FORGOTTEN ((sh_real)12)
@@ -24,23 +22,16 @@
 
 /* ---- columns, columns.c ------------------------------------------------------------------ */
 
-/* Half widths of dead zones and hysteresis, divided by range.phi [1]. Each half width is four times the previous one,
- * so that one of the three is near any width.
- */
+/* Half widths of dead zones and hysteresis, divided by range.phi [1]. One of the three is near any width. */
 #define SH_DEAD_ZONES {(sh_real)0.01, (sh_real)0.04, (sh_real)0.16}
 #define SH_HYSTERESES {(sh_real)0.005, (sh_real)0.02, (sh_real)0.08}
-/* Share of the covered range above which a half width cannot be distinguished from the spring [1]. Half this share
- * doubles the error.
- */
+/* Share of the covered range above which a half width looks like the spring [1]. Half this share doubles the error. */
 #define SH_LOOKS_LIKE_SPRING ((sh_real)0.25)
 /* Stiffness within the widest dead zone divided by the stiffness outside [1]. Below this ratio, the zone is a gap and
- * no part of sigma; otherwise, the zone is a knee. The ratio is 0 for a gap, and one half for a knee of harmonic
- * drives.
+ * no part of sigma; otherwise, the zone is a knee. A knee of harmonic drives has the ratio 0.5.
  */
 #define SH_GAP ((sh_real)0.3)
-/* Deformation at a possible knee divided by range.phi [1]: harmonic drives have a knee at a third of the largest
- * torque.
- */
+/* Deformation at a possible knee divided by range.phi [1]. Harmonic drives have a knee at 1/3 of the largest torque. */
 #define SH_POSSIBLE_KNEE ((sh_real)0.35)
 /* Error of the deformation at a knee, divided by range.phi [1]: `sigmahat identify` finds this deformation to 0.01. */
 #define SH_PLACE_OF_KNEE ((sh_real)0.02)
@@ -53,21 +44,19 @@
 
 /* ---- weight of a sample, noise.c --------------------------------------------------------- */
 
-/* Share of the excess noise in the variance of a row [1]. With 0.1, the intervals are too narrow under jitter, and with
- * 1 too wide.
+/* Share of excess noise in the variance of a row [1]. With 0.1, intervals are too narrow under jitter; with 1, too
+ * wide.
  */
 #define SH_EXCESS ((sh_real)0.3)
-/* Share of the variance count^2/12 of rounding that fourth differences do not show [1]: mean for 1 to 100 counts in a
- * sample.
- */
+/* Share of the rounding variance count^2/12 that fourth differences do not show [1]: mean for 1 to 100 counts. */
 #define SH_ROUNDING_IS_NOT_WHITE ((sh_real)0.056)
 /* Time constant of the measured noise [s]. */
 #define SH_NOISE_TIME ((sh_real)0.1)
 /* Number of std deviations above which the first rows contradict the assumption that the motor is at rest [1]. */
 #define SH_AT_REST ((sh_real)5)
 
-/* Position errors of phi from encoder harmonics and the gear, divided by the once-per-turn error of the link encoder
- * [1]. With 0.025, the estimate of stiff joints with a free inertia is confident and wrong.
+/* Error of phi from encoder harmonics and gear, divided by the once-per-turn error of the link encoder [1]. With 0.025,
+ * the estimate of a stiff joint with a free inertia is confident and wrong.
  */
 #define SH_HARMONICS ((sh_real)0.035)
 /* Largest change of the stiffness by these position errors, in std deviations of the stiffness [1]. */
@@ -79,15 +68,11 @@
 #define SH_SPREAD_OF_SQUARE ((sh_real)6)
 /* Relative error of the information that is removed as noise [1]: the rounding error repeats with the motion. */
 #define SH_REMOVAL_ERROR ((sh_real)0.05)
-/* Largest share of the torque noise that passes through the column of the motor torque [1]: ten times the expected
- * friction.
- */
+/* Largest share of torque noise that passes through the column of the motor torque [1]: ten times expected friction. */
 #define SH_LARGEST_RETURN ((sh_real)0.5)
 /* Relative error of the variance of the torque noise [1]: noise.tau is known to 10 %. */
 #define SH_TORQUE_NOISE_ERROR ((sh_real)0.2)
-/* Least share of the information after the removal of noise [1]: a smaller share would be a rounding error in single
- * precision.
- */
+/* Least share of the information after the removal of noise [1]. A smaller share would be a rounding error in float. */
 #define SH_LEAST_REST ((sh_real)1e-3)
 
 /* ---- misfit and forgetting, misfit.c ----------------------------------------------------- */
@@ -102,14 +87,12 @@
 /* Number of blocks below which no data are forgotten [1]. */
 #define SH_FIRST_BLOCKS ((sh_real)20)
 /* Squared misfit above which the estimate is in doubt, and number of blocks below which this limit holds [1]. With more
- * blocks, most columns that may explain the misfit have been tried, and the variance factor covers the remaining
- * misfit.
+ * blocks, most columns that may explain the misfit have been tried, and the variance factor is sufficient.
  */
 #define SH_UNEXPLAINED ((sh_real)2.25)
 #define SH_UNTRIED_BLOCKS ((sh_real)35)
-/* With N blocks, the variance is multiplied by 1 + SH_UNJUDGED_BLOCKS / N [1]. In the first half second, the estimate
- * of joints with several misfits is then wrong for 1.4 % of the confident time. Without this factor, the estimate was
- * wrong for 4.6 % of the confident time.
+/* With N blocks, the variance is multiplied by 1 + SH_UNJUDGED_BLOCKS / N [1]. In the first half second, joints with
+ * several misfits are then wrong for 1.4 % (without the factor, 4.6 %) of the confident time.
  */
 #define SH_UNJUDGED_BLOCKS ((sh_real)10)
 /* Largest effective number of blocks [1]: 100 s, so that a misfit that begins after hours is noticed soon. */
@@ -126,14 +109,12 @@
  * an industrial robot, with other friction, makes the estimator forget the first run.
  */
 #define SH_FAR_FROM_USUAL ((sh_real)3)
-/* Factor by which data are forgotten faster if the recent blocks do not contradict each other [1]: the joint has
- * changed.
- */
+/* Factor by which data are forgotten faster if the recent blocks agree with each other [1]: the joint has changed. */
 #define SH_FASTER ((sh_real)5)
 /* Process noise of drifting friction, divided by the variance of the friction's prior [1/s]. */
 #define SH_FRICTION_DRIFT ((sh_real)1e-3)
-/* Ratio of the residuals with drifting friction and with constant friction [1]. Below the first number, friction counts
- * as drifting, and above the second number as constant.
+/* Residual with drifting friction divided by the residual with constant friction [1]. Friction counts as drifting below
+ * the first ratio, and as constant above the second ratio.
  */
 #define SH_DRIFT_BEGINS ((sh_real)0.8)
 #define SH_DRIFT_ENDS ((sh_real)0.95)
@@ -159,9 +140,7 @@
  */
 #define SH_CLEARLY_BETTER ((sh_real)25)
 #define SH_BLOCKS_TO_DECIDE ((sh_real)20)
-/* Squared error of a block, in usual errors, above which the block contradicts the changed spring [1]: 3.5 std
- * deviations.
- */
+/* Squared error, in usual errors, above which a block contradicts the changed spring [1]: 3.5 std deviations. */
 #define SH_CONTRADICTS ((sh_real)12.5)
 /* Number of blocks in the mean that is the usual squared error, and largest value of one block in this mean, in usual
  * errors [1]. With these numbers, a change is found before its error becomes the usual error.
@@ -182,7 +161,7 @@
 /* ---- refits and choice of columns, refit.c ----------------------------------------------- */
 
 /* Pause between two refits, divided by the duration of the counted blocks [1]. In 1 % more time, the estimate can
- * hardly change. The number is no simple ratio of blocks and rows, so that no rounding error decides the comparison.
+ * hardly change. The number is no simple ratio of blocks and rows, so that rounding errors have no effect.
  */
 #define SH_REFIT_PAUSE ((sh_real)0.0101)
 /* Duration of a row for each step of a refit in one step of the row [s], and largest number of these steps [1]. A row
@@ -192,13 +171,10 @@
 #define SH_TIME_OF_STEP ((sh_real)0.0065)
 #define SH_MOST_STEPS 4
 /* Number of blocks from which refits try groups of columns [1]. With 15 blocks, the estimates of 360 random joints were
- * confident and more than 20 % wrong for 0.42 % of the time. With 10 blocks, this share was 0.54 %, and with 20 blocks
- * 0.47 %.
+ * confident and over 20 % wrong for 0.42 % of the time. With 10 or 20, the share was 0.54 or 0.47 %.
  */
 #define SH_FIRST_TRIAL ((sh_real)15)
-/* Pause between two refits before groups are tried [s]. Such a refit removes noise (detail 14), and computes the
- * misfit.
- */
+/* Pause between two refits before groups are tried [s]. A refit removes noise (detail 14) and computes the misfit. */
 #define SH_FIRST_PAUSE ((sh_real)0.2)
 /* A group of columns is used if it increases the log evidence by the first number plus the second number for each block
  * [1]. Such a group reduces the variance of the error by a tenth. The limit is necessary, because rounding of a
@@ -214,18 +190,16 @@
 
 /* ---- what is reported, filtered_regression.c --------------------------------------------- */
 
-/* The estimate is not confident if x = |phi| / range.phi is above the second number, and x^e is above the first number
- * [1]. The exponent e is the highest power of phi.
+/* Limits of x^e and of x for x = |phi| / range.phi and the highest exponent e [1]. Beyond both limits, the estimate is
+ * not confident.
  */
 #define SH_LARGEST_POWER ((sh_real)32)
 #define SH_LEAST_LIMIT ((sh_real)2)
-/* Deviation of a motor parameter from its prior above which the estimate is in doubt, in std deviations of the prior
- * [1].
- */
+/* Deviation of a motor parameter above which the estimate is in doubt, in std deviations of the prior [1]. */
 #define SH_OUTSIDE_PRIOR ((sh_real)3)
 /* Distance of viscous friction below 0 from which the estimate is in doubt, in std deviations [1]. Such a friction
- * shows that the encoders are read at different times. Of 40 simulated logs, only the eight logs with a late encoder
- * had a friction below 0.
+ * shows that the encoders are read at different times. Of 40 simulated logs, only the eight with a late encoder had
+ * such a friction.
  */
 #define SH_BELOW_ZERO ((sh_real)1)
 
@@ -235,8 +209,7 @@
 #define SH_LEAST_INFORMATION SH_FOR(SH_REAL, 1e-9, 1e-5f)
 /* Least entry of D [1]. An update that would make an entry of D smaller is left out, because 1/D would overflow. */
 #define SH_SMALLEST_D SH_FOR(SH_REAL, 1e-300, 1e-37f)
-/* Largest factor by which a step may increase a variance [1]. After a larger increase, D would consist of rounding
- * errors.
+/* Largest factor by which a step may increase a variance [1]. Beyond this factor, D would consist of rounding errors.
  */
 #define SH_LARGEST_GROWTH SH_FOR(SH_REAL, 1e12, 1e6f)
 /* Largest number of steps of a simulated filter response: the rows, and 60 time constants with the least w T, 1e-4. */

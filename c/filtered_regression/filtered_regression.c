@@ -28,9 +28,7 @@ static int check_filtered_regression(const sh_parameters *p, sh_violation *viola
     return 0;
 }
 
-/* Returns the largest |phi|, at which the power phi^e is 32 times as large as at range.phi, for the highest exponent e.
- * The largest |phi| is at least twice range.phi.
- */
+/* Returns the |phi| at which the highest power is 32 times its value at range.phi, but at least twice range.phi. */
 static sh_real largest_deformation_filtered_regression(const sh_parameters *p)
 {
     const int e = sh_power_of_phi(p->rls.symmetric, p->rls.n - 1);
@@ -298,9 +296,7 @@ static void start_filtered_regression(sh_estimator *estimator, const sh_paramete
 
 /* ---- tick --------------------------------------------------------------------------------- */
 
-/* Returns 1 if the signals of a sample are so small that no computation overflows. Returns 0 also if a signal is not a
- * number.
- */
+/* Returns 1 if the signals of a sample are finite numbers and so small that no computation overflows. */
 static int are_acceptable(const sh_joint_point *at, sh_real y, const sh_columns *columns)
 {
     return sh_sum_of_products(at->F, at->F, columns->filtered) <= SH_LARGE &&
@@ -358,9 +354,7 @@ static sh_real weight_of(const sh_row_noise *noise, const sh_real *x, int count)
     return w > 0 && w * sh_sum_of_products(x, x, count) <= SH_LARGE ? w : 0;
 }
 
-/* Returns the prediction error epsilon = y - x' beta without the noise of the torque. This noise is also removed from
- * the column of the motor torque (detail 14).
- */
+/* Returns epsilon = y - x' beta without torque noise, which is also removed from the torque column in x (detail 14). */
 static sh_real predict(const sh_regression_state *state, const sh_row_noise *noise, sh_real *x,
                        sh_column_noise *left)
 {
@@ -370,9 +364,7 @@ static sh_real predict(const sh_regression_state *state, const sh_row_noise *noi
     return epsilon - sh_columns_remove_noise(state, noise, epsilon, x, left);
 }
 
-/* Updates the sums that describe the noise in the columns: of b (detail 7), of the torque (detail 14), and of the
- * spring (point 5).
- */
+/* Updates the sums of noise in the columns of b (detail 7), the torque (detail 14) and the spring (point 5). */
 static void update_noise(sh_regression_state *state, const sh_parameters *p,
                          const sh_column_noise *left, sh_real w)
 {
@@ -396,8 +388,7 @@ static void update_noise(sh_regression_state *state, const sh_parameters *p,
     sh_posterior_remove(now, N * now->weight, p->prior.B);
 }
 
-/* Updates the posterior with a complete row: steps 3 to 5 of the tick. Returns 0 if a number of the row is too large.
- */
+/* Updates the posterior with a complete row: steps 3 to 5 of the tick. Returns 0 if the row is too large. */
 static int use_row(sh_regression_state *state, const sh_parameters *p, const sh_row_noise *noise)
 {
     const int size = state->columns.size;
@@ -482,9 +473,7 @@ static int first_step(int tick, int ticks)
     return (SH_ROW_STEPS * tick + ticks - 1) / ticks;
 }
 
-/* Makes the steps of the last row that belong to this tick: all steps are distributed over the ticks until the next
- * row. Returns SH_NEW_*.
- */
+/* Makes the steps of the last row in this tick. The ticks until the next row share all steps. Returns SH_NEW_*. */
 static int take_steps(sh_regression_state *state, const sh_parameters *p)
 {
     const int ticks = state->signals.decimation > 1 ? state->signals.decimation - 1 : 1;
@@ -501,9 +490,7 @@ static int take_steps(sh_regression_state *state, const sh_parameters *p)
     return news;
 }
 
-/* Waits until the filters have settled. A block that is not full is dropped, because the block would contain rows from
- * both sides of the gap.
- */
+/* Waits until the filters have settled. An incomplete block is dropped, because a block must not contain a gap. */
 static void wait_until_settled(sh_regression_state *state)
 {
     sh_signals_unsettle(&state->signals, &state->history);
@@ -512,8 +499,7 @@ static void wait_until_settled(sh_regression_state *state)
     }
 }
 
-/* Resets the quantities that made the numbers of the last row too large, so that the next row is acceptable. Returns 0.
- */
+/* Resets the quantities that made the last row too large, so that the next row is acceptable. Returns 0. */
 static int refuse(sh_regression_state *state, const sh_history *before)
 {
     state->signals.begun = 0; /* the filters start again, so their old state does not matter */

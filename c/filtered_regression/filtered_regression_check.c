@@ -8,9 +8,7 @@
 #include "method.h"
 #include "regression.h"
 
-/* Returns 1 if the columns are equal to the columns that the parameters give at the start. The columns never change
- * later.
- */
+/* Returns 1 if the columns are equal to the columns at the start. Columns never change after the start. */
 static int are_columns(const sh_columns *columns, const sh_parameters *p)
 {
     const int count = sh_columns_count(p);

@@ -71,9 +71,7 @@ void sh_information_restart(sh_information *a, int count, sh_real precision)
     }
 }
 
-/* Variance v of the error of a sample after some rows have taken their part of the sample, and 1 / v. With both
- * numbers, each row waits for only one addition.
- */
+/* Error variance v of a sample that some rows have reduced, and 1 / v, so that each row waits for only one addition. */
 typedef struct {
     sh_real variance, weight;
 } sample_left;
@@ -110,9 +108,7 @@ static void combine(sh_real *restrict row, sh_real *restrict x, int count, sh_re
     }
 }
 
-/* Combines the sample with two rows, one after the other. Each entry of the sample is then read and written only once
- * for both rows.
- */
+/* Combines the sample with two rows. Each entry of the sample is read and written only once for both rows. */
 static void combine_two(sh_real *restrict first, sh_real *restrict second, sh_real *restrict x,
                         int count, const sh_real *xi, const sh_real *gain)
 {
@@ -241,8 +237,8 @@ static void subtract(sh_real *restrict a, sh_real *restrict b, const sh_real *re
     }
 }
 
-/* With v = U'^-1 c, the variance is the sum of v_i^2 / D_i. In single precision, v^2 may overflow if D is very large,
- * so v is divided by D first.
+/* With v = U'^-1 c, the variance is the sum of v_i^2 / D_i. In single precision, v_i^2 may overflow if D_i is very
+ * large.
  */
 sh_variances sh_information_variances(const sh_information *a, sh_real last_D, sh_real *first,
                                       sh_real *second)

@@ -31,10 +31,9 @@ void sh_information_restart(sh_information *a, int count, sh_real precision);
 
 /* Takes a sample.
  *
- * x [size: size + SH_RIGHT_SIDES] regressor, then the right-hand sides. The function overwrites x: afterwards, the last
- * entry is the prediction error of y before the update
- * w  weight. If w is negative, a sample of this weight is removed; U' D U must stay positive
- *    definite
+ * x  [size: size + SH_RIGHT_SIDES] regressor, then the right-hand sides. The function overwrites x. Afterwards, the
+ *    last entry of x is the prediction error of y before the update
+ * w  weight. If w is negative, a sample of this weight is removed; U' D U must stay positive definite
  *
  * A row does not change if its entry of D would fall below 1e-300, or 1e-37 in single precision. The member `squares`
  * grows by at most SH_LARGE.

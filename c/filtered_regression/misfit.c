@@ -1,6 +1,4 @@
-/* Misfit (point 7): prediction errors that no column explains. The misfit is computed from blocks of samples. Data that
- * contradict the model are forgotten.
- */
+/* Misfit (point 7): prediction errors of blocks of samples that no column explains, and forgetting of such data. */
 #include <string.h>
 
 #include "constants.h"
@@ -72,9 +70,7 @@ static void count_block(sh_regression_state *state)
     }
 }
 
-/* Updates the information by the mean row of a block [size: SH_MAX_ROW], or only predicts the row. Returns the squared
- * prediction error divided by its variance [1].
- */
+/* Takes or only predicts the mean row of a block [size: SH_MAX_ROW]. Returns the squared error / its variance [1]. */
 static sh_real take_block(sh_information *a, const sh_real *mean, sh_real w, int only_predicts)
 {
     sh_real x[SH_MAX_ROW], error;
@@ -191,8 +187,7 @@ static int has_many_blocks(const sh_regression_state *state)
  *     kappa^2 = max(q, q_recent, 1 + (q - t) max(1, N / 5))  if q > t, else max(1, q, q_recent) .
  *
  * A misfit is a function of the state and repeats with the motion, so the part q - t does not average out over N
- * blocks. With few blocks, q is the sum divided by N. With fewer than SH_FEW_BLOCKS blocks, misfit and variance factor
- * do not change.
+ * blocks. With few blocks, q is the sum divided by N. With fewer than SH_FEW_BLOCKS blocks, nothing is computed.
  */
 void sh_misfit_judge(sh_regression_state *state, const sh_parameters *p)
 {
@@ -221,9 +216,7 @@ void sh_misfit_judge(sh_regression_state *state, const sh_parameters *p)
 
 /* ---- drift of friction, detail 10 -------------------------------------------------------- */
 
-/* Decides by the residuals of both regressions whether friction drifts. There is no decision while the second
- * regression tests the hypothesis of other friction.
- */
+/* Decides by the residuals of both regressions whether friction drifts, except during a test of other friction. */
 static void judge_drift(sh_regression_state *state)
 {
     const sh_blocks *blocks = &state->blocks;
@@ -294,8 +287,7 @@ static void forget_data(sh_regression_state *state, const sh_parameters *p, sh_r
 }
 
 /* P += drift time / (v'v + R) v v'. The vector v contains the columns of the curve in the last row, and R is the
- * variance of this row. The drift reduces the information along v, and the sum `weights` for errors of phi by the same
- * factor.
+ * variance of this row. The drift reduces the information along v and the sum `weights` by the same factor.
  */
 static void let_curve_drift(sh_regression_state *state, const sh_parameters *p, sh_real time)
 {
@@ -315,9 +307,7 @@ static void let_curve_drift(sh_regression_state *state, const sh_parameters *p, 
     }
 }
 
-/* The time of forgetting is the duration of the blocks, so no data are forgotten at rest. Data are forgotten only after
- * there are many blocks.
- */
+/* The time of forgetting is the duration of the blocks, so no data are forgotten at rest or with few blocks. */
 void sh_forget(sh_regression_state *state, const sh_parameters *p, sh_real time)
 {
     sh_blocks *blocks = &state->blocks;

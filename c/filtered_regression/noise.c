@@ -3,9 +3,7 @@
 #include "regression.h"
 #include "state_variable_filter.h"
 
-/* Returns the sum of the squared counts of both encoders [rad2]. The variance of the rounding of phi is a twelfth of
- * this sum.
- */
+/* Returns the sum of the squared counts of both encoders [rad2], which is 12 times the rounding variance of phi. */
 static sh_real counts_squared(const sh_signals *signals)
 {
     return sh_square(signals->count) + sh_square(signals->count_q);
@@ -113,8 +111,7 @@ sh_real sh_noise_of_inertia(const sh_regression_state *state, const sh_parameter
 }
 
 /* epsilon^2 > 25 (x' P x + N_tau + (gamma^2 B)^2 G count^2/12 + gamma^2 (tau_C^2 + P_CC) u_f^2). In this condition, x
- * contains only the columns of the equation of motion. A bias, or another effect of real joints, would hide a slow
- * motion.
+ * contains only the columns of the equation of motion. Columns of other effects would hide a slow motion.
  */
 int sh_noise_contradicts_rest(sh_regression_state *state, const sh_parameters *p,
                               const sh_row_noise *noise)

@@ -51,9 +51,7 @@ static int choose_columns(const sh_regression_state *state, const sh_parameters 
     return size;
 }
 
-/* Starts a refit. The weight of the data is 1 / kappa^2. In a trial, the weight is 1 / misfit, where the misfit is
- * max(1, q, q_recent).
- */
+/* Starts a refit. The weight of the data is 1 / kappa^2, or in a trial 1 / max(1, q, q_recent). */
 void sh_refit_begin(sh_regression_state *state, const sh_parameters *p)
 {
     sh_refit *refit = &state->refit;
@@ -115,9 +113,7 @@ static sh_real gain_of_evidence(const sh_regression_state *state)
     return gain;
 }
 
-/* With N blocks, a group is used above a log evidence of 3 + 0.05 N, and no longer below 0.025 N. For knees, the limits
- * are 3 + 0.01 N and 0.005 N.
- */
+/* A group is used above a log evidence of 3 + 0.05 N, and no longer below 0.025 N; knees 3 + 0.01 N, and 0.005 N. */
 static void decide_about_group(sh_regression_state *state)
 {
     sh_refit *refit = &state->refit;

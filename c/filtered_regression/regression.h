@@ -113,9 +113,7 @@ int sh_columns_place(const sh_columns *columns, int kind);
 /* Returns 1 if the deformations so far are large enough to distinguish column i from the spring. */
 int sh_column_is_distinct(const sh_regression_state *state, const sh_parameters *p, int i);
 
-/* Sets the point from positions [rad] and set-point [1]. The point keeps the pointer `stop` to the states of hysteresis
- * [size: SH_WIDTHS].
- */
+/* Sets the point from positions [rad] and set-point [1]. The point keeps the pointer `stop` [size: SH_WIDTHS]. */
 void sh_joint_point_at(sh_joint_point *point, const sh_columns *columns, const sh_parameters *p,
                        sh_real theta, sh_real q, sh_real phi, sh_real set_point,
                        const sh_real *stop);
@@ -138,16 +136,15 @@ sh_real sh_columns_y(const sh_parameters *p, const sh_filtered *f);
 void sh_columns_row(const sh_regression_state *state, const sh_parameters *p, sh_real *x);
 
 /* Detail 14: removes the noise of the motor torque, which y also contains, from the column of the motor torque in x.
- * The prediction error of y is epsilon [N.m]. Sets `left` to the noise that remains, times R. Returns the resulting
- * change of the prediction of y [N.m].
+ * The prediction error of y is epsilon [N.m]. Sets `left` to the remaining noise times R. Returns the change of the
+ * predicted y [N.m].
  */
 sh_real sh_columns_remove_noise(const sh_regression_state *state, const sh_row_noise *noise,
                                 sh_real epsilon, sh_real *x, sh_column_noise *left);
 
 /* ---- motion_sign.c: detail 3 ------------------------------------------------------------- */
 
-/* Starts the direction of motion at a position [rad]. The sign of the velocity is unknown until the position changes.
- */
+/* Starts the direction of motion at a position [rad]. The direction is unknown until the position changes. */
 void sh_motion_sign_start(sh_motion_sign *motion, sh_real position);
 
 /* Updates the direction of motion by the next position [rad].
@@ -171,17 +168,13 @@ void sh_signals_take(sh_regression_state *state, const sh_parameters *p, const s
 
 /* ---- noise.c ----------------------------------------------------------------------------- */
 
-/* Returns the variance of the noise of theta in the last sample, from the fourth difference of theta [rad2]. The
- * history keeps a mean of this variance.
- */
+/* Returns the noise variance of theta in the last sample [rad2], and updates the mean of this variance. */
 sh_real sh_noise_watch_theta(sh_regression_state *state, const sh_parameters *p);
 
 /* Detail 4: returns the variance of a row. The noise of theta is estimated from the last samples. */
 sh_row_noise sh_noise_of_row(const sh_regression_state *state, const sh_parameters *p);
 
-/* Return R times the information of a row that is only rounding noise: about sigma (point 5) [rad2], and about b
- * (detail 7) [(N.m)2].
- */
+/* R times the false information in a row by rounding: about sigma (point 5) [rad2], about b (detail 7) [(N.m)2]. */
 sh_real sh_noise_of_deformation(const sh_signals *signals);
 sh_real sh_noise_of_inertia(const sh_regression_state *state, const sh_parameters *p);
 
@@ -194,8 +187,7 @@ int sh_noise_contradicts_rest(sh_regression_state *state, const sh_parameters *p
 void sh_posterior_copy(sh_posterior *to, const sh_posterior *from);
 
 /* Updates the posterior by a row x: all columns [size: size], then the right-hand sides. The weight of the row is w
- * times the weight of the posterior. Returns 1 / (1 + rho), where rho is the variance of the prediction divided by the
- * variance of the row.
+ * times the weight of the posterior. Returns 1 / (1 + rho), rho = variance of prediction / variance of row.
  */
 sh_real sh_posterior_take(sh_posterior *posterior, const sh_real *x, int size, sh_real w);
 
@@ -227,17 +219,13 @@ static inline int sh_block_is_full(const sh_blocks *blocks)
     return blocks->rows >= blocks->length;
 }
 
-/* Makes step 0, 1, 2 or 3 after a row. If the block is full, each step updates one regression by the mean row of the
- * block.
- */
+/* Makes step 0..3 after a row. If the block is full, each step updates one regression by the mean row of the block. */
 void sh_blocks_end(sh_regression_state *state, const sh_parameters *p, int step);
 
 /* Drops the samples of the present block if the next samples do not follow without a gap. */
 void sh_blocks_interrupt(sh_blocks *blocks);
 
-/* Detail 8: the first function computes the misfit of the recent blocks with the estimate beta. The second function
- * sets misfit and variance_factor from all blocks.
- */
+/* Detail 8: the two functions compute the misfit of the recent blocks, and misfit and variance_factor of all blocks. */
 void sh_misfit_judge_recent(sh_regression_state *state, const sh_parameters *p);
 void sh_misfit_judge(sh_regression_state *state, const sh_parameters *p);
 
@@ -249,7 +237,7 @@ void sh_drift_step(sh_refit *refit, sh_information *a, int column, sh_real varia
  */
 void sh_friction_drift(sh_regression_state *state, sh_real time, int step);
 
-/* Details 9 and 11: forgets data that contradict the model, and lets the curve drift for `time` [s] along the last row.
+/* Details 9 and 11: forgets data that contradict the model, and lets the curve drift along the last row for `time` [s].
  */
 void sh_forget(sh_regression_state *state, const sh_parameters *p, sh_real time);
 
@@ -262,9 +250,7 @@ void sh_change_start(sh_regression_state *state);
  */
 int sh_change_begins_anew(sh_regression_state *state, sh_real error);
 
-/* Compares three hypotheses by their squared errors in a block, divided by the variances: no change, another spring,
- * and other friction.
- */
+/* Compares three hypotheses by squared errors divided by variances: no change, another spring, other friction. */
 void sh_change_judge(sh_regression_state *state, const sh_parameters *p, sh_real before,
                      sh_real spring, sh_real friction);
 
@@ -290,14 +276,10 @@ void sh_refit_begin(sh_regression_state *state, const sh_parameters *p);
 /* Updates the data of all samples by the newest row. */
 void sh_data_take(sh_regression_state *state);
 
-/* Updates the posterior of a running refit by the part of the newest row that sh_data_take has left. Between the two
- * calls, the refit must read no row.
- */
+/* After sh_data_take, updates the posterior of a refit by the remaining part of the newest row. */
 void sh_refit_take(sh_regression_state *state);
 
-/* Makes one step of a refit: reads a row of the data of all samples, or two short rows, or does the next work after the
- * last row. Returns SH_NEW_*.
- */
+/* Makes one step of a refit: reads one or two rows of the data, or makes the next end step. Returns SH_NEW_*. */
 int sh_refit_advance(sh_regression_state *state, const sh_parameters *p);
 
 #endif

@@ -22,9 +22,7 @@ static sh_real bandwidth_of(const sh_parameters *p)
         (sh_real)1e-4 / p->samplePeriod);
 }
 
-/* Returns the number of samples of a row, K = 2.5 / (w T), 1..8. Rows of more samples would lose information behind the
- * filter.
- */
+/* Returns the number of samples of a row, K = 2.5 / (w T), 1..8. Longer rows would lose information. */
 static int decimation_of(const sh_parameters *p)
 {
     const sh_real wT = bandwidth_of(p) * p->samplePeriod;
@@ -74,8 +72,7 @@ static void take_deformation(sh_history *history, const sh_signals *signals, con
     history->phi = phi;
 }
 
-/* Returns the load that causes friction, which is the torque of the spring. Before the stiffness is known, the load is
- * the last fitted y (detail 13).
+/* Returns the load that causes friction: the spring torque, or the last fitted y without a known stiffness (detail 13).
  */
 static sh_real load_of(const sh_regression_state *state, const sh_joint_point *at)
 {
@@ -84,9 +81,7 @@ static sh_real load_of(const sh_regression_state *state, const sh_joint_point *a
                : state->y;
 }
 
-/* Sets the inputs of the filters [size: SH_FILTERS]. An input is the value at the time of the sample, or the mean since
- * the last sample.
- */
+/* Sets the inputs of the filters [size: SH_FILTERS]: values at the sample, or means since the last sample. */
 static void set_inputs(const sh_regression_state *state, const sh_parameters *p,
                        const sh_joint_point *at, sh_real torque, sh_real *x)
 {
@@ -107,8 +102,7 @@ static void set_inputs(const sh_regression_state *state, const sh_parameters *p,
 }
 
 /* Starts the filters at the first sample. The motor is assumed to be at rest, at any torque (detail 12), so the filter
- * of theta starts at the present position. The signals of the equation of motion start at zero, because the equation
- * holds from this sample on.
+ * of theta starts at the present position. The signals of the equation of motion start at zero.
  */
 static void begin_filters(sh_regression_state *state, const sh_parameters *p,
                           const sh_joint_point *at, sh_real torque)

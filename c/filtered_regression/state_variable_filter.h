@@ -10,9 +10,7 @@
 
 #include "sigmahat.h"
 
-/* Filter with the corner frequency w [rad/s] and the sample period T [s]. For w T below 1e-4, the filter would lose
- * digits.
- */
+/* Designs a filter with the corner frequency w [rad/s] and the sample period T [s]. w T < 1e-4 would lose digits. */
 sh_filter_design sh_state_variable_filter_design(sh_real w, sh_real T);
 
 /* Starts filter i for a signal that has always been `before` and jumps to x now. */
@@ -23,15 +21,11 @@ void sh_filters_start(sh_filters *filters, int i, sh_real x, sh_real before);
  */
 void sh_filters_hold(sh_filters *filters, int i, sh_real mean);
 
-/* Advances `count` filters, beginning with filter `first`, by T. During T, the signals of the filters change linearly
- * to x [size: count].
- */
+/* Advances `count` filters by T, beginning with filter `first`. Their signals change linearly to x [size: count]. */
 void sh_filters_step(sh_filters *restrict filters, const sh_filter_design *design, int first,
                      const sh_real *restrict x, int count);
 
-/* Sets the states of the first `count` filters to 0 if the states are nearly 0. Without this function, the states would
- * decay to numbers with which processors compute slowly.
- */
+/* Sets filter states that are nearly 0 to 0, because processors compute slowly with still smaller numbers. */
 void sh_filters_rest(sh_filters *filters, int count);
 
 /* Computes the output signals of the filters and their derivatives. */

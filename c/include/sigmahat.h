@@ -81,9 +81,7 @@ enum {
     SH_RLS_CONSTANT_FACTOR = 3 /* constant a in (25) */
 };
 
-/* Reasons why the estimate is not confident. If there are several reasons, the library reports the last one of this
- * list.
- */
+/* Reasons why the estimate is not confident. The library reports the last reason of this list. */
 enum {
     SH_DOUBT_NONE = 1,           /* it is confident */
     SH_DOUBT_NO_CLAIM,           /* the method computes no uncertainty that contains all errors */
@@ -358,8 +356,7 @@ void sh_estimator_start(sh_estimator *estimator, const sh_parameters *p, sh_esti
  * this value has decayed.
  *
  * SH_METHOD_FILTERED_REGRESSION starts its filters again, and does not change its regression for 12 / w. The corner
- * frequency w of its filters is at most regression.bandwidth. After a change of the modality, this method also starts
- * its filters again.
+ * frequency w is at most regression.bandwidth. A change of the modality has the same effect.
  */
 int sh_estimator_tick(sh_estimator *estimator, const sh_parameters *p, const sh_measurement *z,
                       sh_estimate *estimate);

@@ -1,8 +1,7 @@
 /* The state of an estimator from one tick to the next: a struct for each block of c/.
  *
  * Users include only sigmahat.h, because the structs of this header may change with every version. This header is
- * installed, because the caller provides the memory for the structs. Members named `work` have no meaning between two
- * calls.
+ * installed, because the caller provides the memory for the structs. Members named `work` are only valid within a call.
  */
 #ifndef SIGMAHAT_STATE_H
 #define SIGMAHAT_STATE_H
@@ -134,9 +133,7 @@ typedef struct {
     sh_column column[SH_MAX_COLUMNS];
 } sh_columns;
 
-/* Signals of the filters. The signals before SH_FILTER_NOMINAL start as if they had always been constant; all other
- * signals start at 0.
- */
+/* Signals of the filters. Signals before SH_FILTER_NOMINAL start as if always constant; the others start at 0. */
 enum {
     SH_FILTER_THETA,
     SH_FILTER_PHI,     /* deformation */
@@ -221,9 +218,7 @@ typedef struct {
     sh_real gain;        /* part in the right-hand side SH_RIGHT_GAIN [1] */
 } sh_column_noise;
 
-/* Posterior from the prior and the data, which are weighted by the misfit. A posterior has its own order of the
- * columns.
- */
+/* Posterior from the prior and the data, weighted by the misfit. A posterior has its own order of the columns. */
 typedef struct {
     sh_information information;
     short column[SH_MAX_COLUMNS]; /* which column of the data each of its own is */

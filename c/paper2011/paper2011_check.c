@@ -1,6 +1,4 @@
-/* Checks whether a state is a possible state of the method Paper2011. The number of parameters alone determines all
- * loops and indices.
- */
+/* Checks whether a state is possible for the method Paper2011. Only the number of parameters limits the indices. */
 #include "method.h"
 
 int sh_paper2011_check_state(const sh_estimator *estimator, const sh_parameters *p)

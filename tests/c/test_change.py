@@ -98,9 +98,7 @@ def test_a_hypothesis_that_began_before_the_change_begins_anew(c: Library) -> No
 @pytest.mark.parametrize("factor", [2.0, 0.5, 1.3])
 @pytest.mark.parametrize("inertia", [0.05, 0.2])
 def test_a_change_under_a_free_load_is_followed(c: Library, inertia: float, factor: float) -> None:
-    """GIVEN motor data that are known to 3 %, THEN a change of the spring differs from another
-    inertia.
-    """
+    """GIVEN motor data known to 3 %, THEN a changed spring differs from another inertia."""
     joint = FreeLoad(inertia=inertia, stiffness=step(factor))
     found = Estimator(c, {**SETTINGS, "prior.B": 0.03}).run(joint.measurements())
     error = np.abs(found["sigma"] / joint.sigma - 1)

@@ -121,7 +121,7 @@ def test_a_prior_of_zero_removes_its_columns_and_no_other(c: Library, prior: str
 def test_the_effect_of_the_gain_is_that_of_a_wrong_gain(
     c: Library, values: dict[str, float]
 ) -> None:
-    """The torque is recorded 1 % too large."""
+    """GIVEN a recorded torque that is 1 % too large."""
     z = MisfitJoint(duration=3.0, tau_coulomb=0.0).measurements()
     larger = z.copy()
     larger[:, 3] *= 1.01

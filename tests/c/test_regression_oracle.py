@@ -186,9 +186,7 @@ def test_every_tick_of_a_joint_with_a_misfit(c: Library, name: str) -> None:
 
 @slow
 def test_every_tick_of_a_misfit_that_begins(c: Library) -> None:
-    """Older data are forgotten five times as fast when the recent data do not contradict each
-    other.
-    """
+    """Older data are forgotten five times as fast when the recent data agree with each other."""
     joint = replace(JOINT, duration=12.0, stiffness=lambda t: np.where(t < 3.0, 1.0, 0.95))
     values = {**ONE, **PLAIN, "rls.n": 2}
     z = joint.measurements()

@@ -35,9 +35,7 @@ def test_the_sign_of_steady_motion_is_known_between_counts(c: Library, velocity:
 
 
 def test_the_sign_is_unknown_at_rest(c: Library) -> None:
-    """The sign becomes unknown after a time without a count: the time of one count at the velocity
-    `slow`.
-    """
+    """The sign is unknown after the time that one count takes at the velocity `slow`."""
     x = 0.5 * T * np.minimum(np.arange(200.0), 100)
     signs, unknown = run(c, round_to_counts(x, COUNTS))
     waiting = int(np.ceil(COUNT / (SLOW * T))) + 2

@@ -30,7 +30,7 @@ CONFIGURATION: dict[str, dict[str, float]] = {
     "noise.tau_e": {"modality": 2},
     "motor.uneven": {"motor.tau_coulomb": 0.02},
     "motor.stribeck": {"motor.tau_coulomb": 0.02, "motor.v_stribeck": 5.0},
-    # By tau the stiffness is negative.
+    # With the torque from tau, the stiffness is negative here.
     "limit.relative_std": {"limit.relative_std": 1e12, "modality": 2},
     # So few columns that two passes take less than the run.
     "regression.drift": {"rls.n": 1, "rls.m": 1, **WITHOUT_MISFITS},

@@ -191,9 +191,7 @@ class Estimator:
         return record
 
     def repeat(self, measurements: Array, ticks: int) -> int:
-        """Runs ticks over measurements, which are repeated. Returns the number of ticks that were
-        not skipped.
-        """
+        """Runs ticks over repeated measurements. Returns the number of valid ticks."""
         return self._drive(measurements, ticks, None)
 
     def _drive(self, measurements: Array, ticks: int, record: NDArray[np.void] | None) -> int:

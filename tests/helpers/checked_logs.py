@@ -79,8 +79,7 @@ WRONG: Mapping[str, tuple[str, str, tuple[str, ...]]] = {
     ),
     "torque constant + 10 %": ("= 0.05\n", "= 0.055\n", ("ports.tau.torque_constant",)),
 }
-"""Wrong configurations by name: old text in RIGHT, new text, and keys, one of which `check` must
-name.
+"""Wrong configurations by name: text in RIGHT, replacement, keys of which `check` must name one.
 """
 
 

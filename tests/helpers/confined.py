@@ -42,7 +42,7 @@ class Done:
     megabytes: float  # peak of the memory in RAM
 
     def complaint(self) -> str | None:
-        """Returns a forbidden action of the command that a file has caused; None if there is none."""
+        """Returns a forbidden action of the command; None if there is none."""
         if self.seconds > LONGEST:
             return f"took {self.seconds:.1f} s"
         if self.megabytes > MOST_MEMORY:

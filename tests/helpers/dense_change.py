@@ -1,6 +1,4 @@
-"""The hypotheses of a change in FilteredRegression, in numpy; C code:
-c/filtered_regression/change.c.
-"""
+"""The hypotheses of a change in numpy; C code: c/filtered_regression/change.c."""
 
 from copy import deepcopy
 from typing import TYPE_CHECKING
@@ -22,9 +20,7 @@ def squared_error(sums: "Information", row: "Long", variance: float) -> float:
 
 
 class Change:
-    """Whether the spring, or friction, has changed. In the runs of the oracle, neither spring nor
-    friction changes.
-    """
+    """Whether the spring, or friction, has changed: never in the runs of the oracle."""
 
     def __init__(self, sums: "Information", spring: int, friction: slice) -> None:
         """spring, friction  columns: the number of the first ones, and the others"""

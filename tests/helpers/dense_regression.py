@@ -72,7 +72,7 @@ class Information:
         self.matrix += w * np.outer(row, row)
 
     def factors(self) -> tuple[Long, Long, np.longdouble]:
-        """Returns rows (U, U z) [size: size x size + 2], D, and the residual part, by elimination."""
+        """Returns rows (U, U z) [size: size x size + 2], D, and residual, by elimination."""
         left, size = self.matrix.copy(), self.size
         rows: Long = np.zeros((size, len(left)), dtype=np.longdouble)
         D: Long = np.zeros(size, dtype=np.longdouble)
@@ -157,9 +157,7 @@ class Posterior:
         self.P = self.P + information * gain * np.outer(along, along)
 
     def remove(self, information: float) -> None:
-        """Removes false information about b by rounding of theta, but keeps the information of the
-        prior.
-        """
+        """Removes false information about b by rounding of theta, but keeps the prior."""
         self.surplus += information
         back = min(self.surplus, float(1 / self.P[-1, -1] - 1))
         if back > 0:
@@ -268,9 +266,7 @@ class Oracle:
         return [slice(begin, end + 1) for begin, end in zip(begins, ends, strict=True)]
 
     def set_noise(self) -> None:
-        """Noise gains behind the filter: of the torque [(N.m)2], and of theta per variance
-        [(N.m/rad)2].
-        """
+        """Noise behind the filter: of torque [(N.m)2], of theta per variance [(N.m/rad)2]."""
         p, K = self.p, self.K
         pulse = np.concatenate([[0.0], np.full(K, 1 / K), np.zeros(20000)])
         response = [through(pulse, order, self.w, self.T) for order in (0, 2)]
@@ -296,7 +292,7 @@ class Oracle:
         return widths is None or widths[index] < covered
 
     def posterior(self, trial: int, weight: float) -> Posterior:
-        """Indices of the used columns, and behind them of the columns of the group that is tried."""
+        """Posterior of the used columns, followed by the columns of the tried group."""
         tried = [0 < group == trial for group in self.groups]
         own = [i for i in range(self.n) if self.is_distinct(i)]
         chosen = [i for i in own if self.used[self.groups[i]] and not tried[i]]
@@ -340,9 +336,7 @@ class Oracle:
         return 0.2 if count < 15 else 0.0101 * 0.05 * count
 
     def end_build(self) -> None:
-        """Removes the noise in the columns of the new posterior. Rows that arrive before its use
-        are added later.
-        """
+        """Removes the noise of a new posterior. Later rows are added before the first use."""
         self.build.solve(self.data)
         if self.p["prior.B"] > 0:
             self.build.remove(0.0)
@@ -522,9 +516,7 @@ class Oracle:
     def make_steps(
         self, row: Long, R: float, last: float, rough: float, measured: bool
     ) -> Iterator[None]:
-        """Makes the seven steps after a row, which are distributed over the ticks until the next
-        row.
-        """
+        """Makes the seven steps after a row, distributed over the ticks until the next row."""
         self.set_beta()
         yield
         self.new_variances = True
@@ -556,7 +548,7 @@ class Oracle:
             yield
 
     def pass_on(self, step: int) -> None:
-        """The refit pauses while friction gets the variances of its priors, one column in each row."""
+        """Makes a step of the refit, except while friction gets the variances of its priors."""
         if self.change.left > 0:
             self.change.left -= step == 1 and self.is_sampled
             self.is_sampled = step == 0
@@ -708,9 +700,7 @@ class Oracle:
     # Outputs
 
     def set_beta(self) -> None:
-        """Estimates of the posterior for both right-hand sides, gain and y, stored until the
-        posterior changes.
-        """
+        """Estimates for both right-hand sides, gain and y; stored until the posterior changes."""
         estimates, self.P = self.live.weighted()
         self.by_gain, self.beta = np.zeros((SIDES, self.n), dtype=np.longdouble)
         self.by_gain[self.live.chosen], self.beta[self.live.chosen] = estimates.T

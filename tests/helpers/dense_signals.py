@@ -40,9 +40,7 @@ def through(x: Array, order: int, w: float, T: float, held: bool = False) -> Arr
 
 @cache
 def as_if_smooth(w: float, T: float) -> tuple[Array, Array]:
-    """Filters a signal that is given by its mean over each sample; the output is at the end of the
-    sample.
-    """
+    """Filters a signal given by its mean over each sample; the output is at the sample's end."""
     (b, a), (of_second, _) = (discrete(order, w, T, "zoh") for order in (0, 2))
     return (b + T**2 / 12 * of_second)[1:], a  # without the 0 for the sample to come
 
@@ -67,9 +65,7 @@ def decimation(p: Parameters) -> int:
 
 
 def direction(c: Library, theta: Array, count: float, slow: float) -> tuple[Array, Array]:
-    """Returns the mean sign over the sample that ends at each instant, and 0 if the sign is known,
-    else 1 or more.
-    """
+    """Mean sign over the sample before each instant; and 0 if the sign is known, else 1 or more."""
     motion = c.new("sh_motion_sign")
     c.lib.sh_motion_sign_start(motion, theta[0])
     found = [(0.0, 1.0)]
@@ -147,9 +143,7 @@ def plays(phi: Array, runs: list[slice], range_phi: float) -> Array:
 
 
 class Inputs:
-    """Signals of the columns before the filters, and derivatives of the signals by phi [size: ticks
-    x n].
-    """
+    """Unfiltered signals of the columns, and their derivatives by phi [size: ticks x n]."""
 
     def __init__(self, p: Parameters, z: Array, runs: list[slice]) -> None:
         theta, q, theta_c = z[:, 0], z[:, 1], z[:, 2]
@@ -252,7 +246,9 @@ class Filtered:
         return through(x, order, self.w, self.T, held)
 
     def column(self, i: int) -> Array:
-        """Signals that do not depend on the estimate; LOAD, DELAY, SIN_M, and COS_M are set later."""
+        """Signals of a column; LOAD, DELAY, SIN_M, and COS_M depend on the estimate and are set
+        later.
+        """
         kind, _, prior = self.columns[i]
         sign = np.append(self.sign[1:], 0.0)
         smooth = np.asarray(signal.lfilter(*as_if_smooth(self.w, self.T), self.sign))

@@ -25,8 +25,7 @@ class Analysis:
     """What Eva found."""
 
     alarms: tuple[str, ...]
-    """Returns possible errors, and assertions and preconditions that Eva could not prove: place and
-    text.
+    """Possible errors, and assertions and preconditions that Eva could not prove: place and text.
     """
     proven: int  # assertions and preconditions
     coverage: int  # share of the statements that it reached in the functions that it analysed [%]

@@ -18,9 +18,7 @@ _MODEL_EXCHANGE = {
 
 
 def functions(prefix: str) -> dict[str, list[str]]:
-    """C parameters of each function, by the name of the function without the prefix "fmi2" or
-    "fmi3".
-    """
+    """C parameters by the name of the function without the prefix "fmi2" or "fmi3"."""
     text = (HEADERS / f"{prefix}FunctionTypes.h").read_text()
     declared = re.findall(rf"^ *typedef [^;(]+\b{prefix}(\w+)TYPE *\(([^)]*)\);", text, re.M)
     left_out = _MODEL_EXCHANGE if prefix == "fmi2" else set()
@@ -40,8 +38,7 @@ def of_an_instance(prefix: str) -> dict[str, list[str]]:
     }
 
 
-# No variable has one of these types, and their functions differ from the functions of String only
-# by name.
+# No variable has one of these types. Apart from names, they have the functions of String.
 _LIKE_STRING = r"[GS]et(Float32|U?Int8|U?Int16|UInt32|UInt64)"
 
 

@@ -81,9 +81,7 @@ class _Instance:
         return (ctypes.c_uint * len(names))(*map(self.reference, names))
 
     def access(self, function: str, references: Any, values: Any) -> int:
-        """Calls GetX or SetX; both arguments are arrays. Functions of FMI 3.0 also take the length
-        of each array.
-        """
+        """Calls GetX or SetX with two arrays. FMI 3.0 also needs the length of each array."""
         n = SIZE(len(values))
         return self.call(function, references, n, values, *([n] if self.prefix == "fmi3" else []))
 

@@ -110,9 +110,7 @@ class Driver:
 
 @dataclass(frozen=True)
 class Fmi:
-    """A version of FMI. The fixture is a function that makes an instance of the FMU with a given
-    name.
-    """
+    """A version of FMI: a function that makes an instance of the FMU with a given name."""
 
     kind: type[Instance] | type[Instance3]
     path: Callable[[str], Path]

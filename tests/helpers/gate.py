@@ -26,8 +26,7 @@ _PACKAGES = {
 }
 """Name of the Debian package, if it differs from the name of the program."""
 _ALWAYS_THERE = {"c++", "cc", "g++", "gcc", "git", "sh", "wine64"}
-"""The gate has a run with a minimal PATH, in which Wine is found in its own folder. This PATH has
-CMake but not make, which CMake uses if a test names no other build tool.
+"""A run of the gate has a minimal PATH, with Wine in its own folder, with CMake, but without make.
 """
 
 
@@ -59,7 +58,7 @@ def need(name: str, folder: str = "") -> str:
 
 
 def need_of_environment(name: str) -> str:
-    """Path of a program of the Python environment. Ends the test if the program is not installed."""
+    """Path of a program of the Python environment. Ends the test without the program."""
     found = shutil.which(name, path=sysconfig.get_path("scripts"))
     if found is None:
         missing(f"{name} of the environment", "cmake --build build --target packages_test")

@@ -69,9 +69,7 @@ class LivePage:
         return {name: np.array(values, dtype=np.float64) for name, values in result.items()}
 
     def drops(self, text: str, name: str = "log.csv") -> str:
-        """Drops a file on the page, and returns the error message of the page; empty if the file is
-        valid.
-        """
+        """Drops a file on the page, and returns the error message; empty if the file is valid."""
         self.page.run(f"{_DROP} log.form.hidden = true;", name, text)
         self.page.until(lambda: self.text("log-message") or self.text("log-name"))
         return self.text("log-message")
@@ -80,7 +78,7 @@ class LivePage:
         self.page.run(_FILL, fields)
 
     def estimates(self, fields: Mapping[str, object]) -> str:
-        """Fills in the fields for the log, and starts the estimation. Returns what it complains of."""
+        """Fills in the fields for the log, starts the estimation, and returns the error message."""
         self.fills(fields)
         self.page.run("log.form.requestSubmit()")
         self.page.until(lambda: self.text("log-message") or self.text("answer"))

@@ -23,9 +23,7 @@ NO_NOISE = "redeclare function drawNoise = Sigmahat.Plants.noNoise"
 
 
 def modification(**values: Any) -> str:
-    """Returns a Modelica modification, "motor(B=1), init(q=2)", from values by their names in the
-    FMU.
-    """
+    """Modelica modification "motor(B=1), init(q=2)" from values by their names in the FMU."""
     groups: dict[str, list[str]] = {}
     for name, value in values.items():
         group, _, last = name.rpartition(".")

@@ -150,9 +150,7 @@ def coverage(measured: Sequence[Log], fit: Estimator) -> float:
 
 
 def leave_one_out(measured: Sequence[Log]) -> dict[int, float]:
-    """RMS error [%] of the torque at each setting except the outer two, with a fit to the other
-    five settings.
-    """
+    """RMS [%] of the torque at each inner setting, with a fit to the other five settings."""
     return {
         log.setting: log.rms(replay([each for each in measured if each is not log], False))
         for log in measured[1:-1]

@@ -126,7 +126,7 @@ def write_log(
 
 
 def estimated(folder: Path, columns: Columns, configuration: str, options: str = "") -> Path:
-    """A folder with knee.parquet, its configuration, and the output files of `sigmahat estimate`."""
+    """A folder with knee.parquet, its configuration, and the output of `sigmahat estimate`."""
     with working_in(folder):
         write_log(columns, Path("knee.parquet"), configuration)
         assert main(["estimate", "knee.parquet", "--quiet", *options.split()]) == 0

@@ -60,7 +60,7 @@ class Run:
         return trajectory
 
     def assert_same(self, other: NDArray[np.float64]) -> None:
-        """Fails and names the worst variable if a trajectory differs from the trajectory of FMPy."""
+        """Fails and names the worst variable if a trajectory differs from FMPy's trajectory."""
         assert other.shape == self.trajectory.shape
         scale = np.abs(self.trajectory).max(axis=0)
         difference = np.abs(other - self.trajectory).max(axis=0)

@@ -44,7 +44,7 @@ int sh_plant_solve_complex(const double **arg, double **res, int *iw, double *w,
     return 0;
 }
 
-/* A plant needs no marks: whatever its numbers are, they lead to no other memory. */
+/* A plant needs no marks, because no number of a plant is used as an index or pointer. */
 #define NO_MARK(function, type)                                                                    \
     void function(type *model)                                                                     \
     {                                                                                              \
