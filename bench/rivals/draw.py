@@ -101,7 +101,7 @@ LARGEST_PHI = 0.2  # [rad]
 
 
 def drawn(kind: str, seed: int) -> Joint:
-    """A joint of one of KINDS; no two kinds share random numbers."""
+    """Draws a joint of one of KINDS; each kind has its own random numbers."""
     draw = (_series_elastic, _variable_stiffness, _arm)[KINDS.index(kind)]
     return draw(np.random.default_rng([seed, KINDS.index(kind), 0]))
 
@@ -119,7 +119,7 @@ def _within(value: float, limits: Range) -> bool:
 
 
 def _until(draw: Callable[[], T], good: Callable[[T], bool]) -> T:
-    """The first draw that is good."""
+    """Repeats a draw until the condition `good` is true, and returns this draw."""
     return next(filter(good, iter(draw, None)))
 
 
@@ -147,7 +147,7 @@ def _friction(rng: Rng, peak: float) -> Friction:
 
 
 def _motor(rng: Rng, load: float, holds: float = 0.0) -> Motor:
-    """A motor for an inertia [kg.m2] that lifts a torque `holds` [N.m]."""
+    """Draws a motor for an inertia `load` [kg.m2] that can hold a torque `holds` [N.m]."""
 
     def draw() -> Motor:
         B = _log(rng, LOG_B)
@@ -169,7 +169,7 @@ def _motor(rng: Rng, load: float, holds: float = 0.0) -> Motor:
 
 
 def _spring(rng: Rng, stiffness: float, load: float, torque: float) -> Spring:
-    """A spring that is linear, or hardens at the deformation under this torque [N.m]."""
+    """Draws a spring that is linear, or hardens at the deformation by the given torque [N.m]."""
     more = _even(rng, HARDENING) * int(rng.integers(2))
     return Spring(
         stiffness, stiffness * more / 3 / (torque / stiffness) ** 2, _damping(rng, stiffness, load)
@@ -197,7 +197,7 @@ def _sheet(rng: Rng) -> dict[str, float]:
 
 
 def _instruments(rng: Rng, peak: float, phi: float) -> Instruments:
-    """Encoders that see the deformation phi [rad]."""
+    """Draws instruments with encoders that can resolve the deformation phi [rad]."""
 
     def encoder() -> int:
         return 1 << int(rng.integers(BITS[0], BITS[1] + 1))
@@ -218,7 +218,7 @@ def _instruments(rng: Rng, peak: float, phi: float) -> Instruments:
 
 @dataclass(frozen=True)
 class _Multisine:
-    """Sum of sines around zero."""
+    """A sum of sines with mean zero."""
 
     frequencies: Array  # [Hz]
     amplitudes: Array
@@ -229,13 +229,13 @@ class _Multisine:
         return 2j * np.pi * self.frequencies.astype(np.complex128)
 
     def harmonics(self, response: Complex) -> Array:
-        """Output of a linear system with this complex response to each line, 0 at rest."""
+        """Computes the output of a linear system, given its complex response to each sine."""
         angles = 2 * np.pi * np.outer(TIMES, self.frequencies) + self.phases
         summed: Array = np.imag(np.exp(1j * angles) @ (self.amplitudes * response))
         return summed
 
     def values(self) -> Array:
-        """At TIMES; it fades in."""
+        """Computes the multisine at TIMES, with an amplitude that rises smoothly from 0."""
         fade = np.clip(TIMES / FADE, 0, 1)
         smooth: Array = fade * fade * (3 - 2 * fade)
         return smooth * self.harmonics(np.ones(LINES, np.complex128))
@@ -251,7 +251,7 @@ def _peak(values: Array) -> float:
 
 
 def _gains(motor: Motor, load: float, bandwidth: float) -> tuple[float, float]:
-    """kp and kd of a motor with a load [kg.m2] for a bandwidth [Hz]."""
+    """Computes the control gains kp and kd of a motor with a load [kg.m2] for a bandwidth [Hz]."""
     omega = 2 * math.pi * bandwidth
     total = (motor.inertia + load) / motor.gear
     kd = min(2 * 0.7 * omega * total, LARGEST_GAIN * motor.B * motor.gear)
@@ -259,7 +259,7 @@ def _gains(motor: Motor, load: float, bandwidth: float) -> tuple[float, float]:
 
 
 def _torque_drive(rng: Rng, motor: Motor, load: float, stiffness: float) -> tuple[Drive, float]:
-    """A multisine of torque, and the deformation of a linear joint under it [rad]."""
+    """Draws a multisine of torque, and computes the deformation of a linear joint [rad]."""
     own_frequency = math.sqrt(stiffness / load) / 2 / math.pi
     sines = _multisine(rng, max(_even(rng, HIGHEST) * own_frequency, 3 * LOWEST))
     s = sines.s  # 2 pi j f
@@ -279,7 +279,7 @@ def _torque_drive(rng: Rng, motor: Motor, load: float, stiffness: float) -> tupl
 def _position_drive(
     rng: Rng, motor: Motor, load: float, stiffness: float, centre: float = 0.0
 ) -> tuple[Drive, float]:
-    """Position control along a multisine, and the deformation by the inertia alone [rad]."""
+    """Draws position control along a multisine, and computes the deformation by inertia [rad]."""
     bandwidth = _even(rng, BANDWIDTH)
     sines = _multisine(rng, bandwidth)
     sines = replace(sines, amplitudes=1 / sines.frequencies)
@@ -297,8 +297,8 @@ def _position_drive(
 
 
 def _single(rng: Rng, load: float, stiffness: float) -> dict[str, Any]:
-    """A joint with one motor, all but its spring; the link is a rod. In half of the cases the axis
-    is horizontal, if the motor can lift the link."""
+    """Draws a joint with one motor and a rod as link, without a spring. In half of the cases the
+    axis is horizontal, if the motor can lift the link."""
     motor = _motor(rng, load)
     length = _even(rng, LENGTHS)
     mass = 3 * load / length**2
@@ -318,7 +318,7 @@ def _single(rng: Rng, load: float, stiffness: float) -> dict[str, Any]:
 
 
 def _series_elastic(rng: Rng) -> Joint:
-    """A series elastic joint, whose spring may harden or is linear."""
+    """Draws a series elastic joint with a linear or hardening spring."""
     load = _log(rng, LOG_LINK)
     stiffness = _stiffness(rng, LOG_STIFFNESS, load)
     parts = _single(rng, load, stiffness)
@@ -345,7 +345,7 @@ def _tendons(rng: Rng, stiffness: float, load: float) -> Tendons:
 
 
 def _variable_stiffness(rng: Rng) -> Joint:
-    """A joint with two tendons, whose stiffness motor turns during the run."""
+    """Draws a joint with two tendons, whose stiffness motor turns during the simulation."""
     load = _log(rng, LOG_LINK)
     stiffness = _stiffness(rng, LOG_STIFFNESS_VARIABLE, load)
     tendons = _tendons(rng, stiffness, load)
@@ -367,15 +367,15 @@ def _links(rng: Rng) -> tuple[Link, Link]:
 
 
 def _loads(links: tuple[Link, Link]) -> tuple[float, float]:
-    """Inertia about both axes, the elbow bent by a right angle [kg.m2]."""
+    """Computes the inertia about both axes, with a right angle at the elbow [kg.m2]."""
     upper, lower = links
     at_elbow = lower.about_axis
     return upper.about_axis + lower.mass * upper.length**2 + at_elbow, at_elbow
 
 
 def _gravity_torques(links: tuple[Link, Link], q_1: Array, q_2: Array) -> tuple[Array, Array]:
-    """Torques that hold the arm at these angles; the second angle is relative to the first link
-    [N.m]."""
+    """Computes the torques that hold the arm at two angles [N.m]; the second angle is relative to
+    the first link."""
     upper, lower = links
     elbow = G * lower.mass * lower.centre * np.sin(q_1 + q_2)
     at_shoulder = G * (upper.mass * upper.centre + lower.mass * upper.length) * np.sin(q_1)
@@ -383,8 +383,8 @@ def _gravity_torques(links: tuple[Link, Link], q_1: Array, q_2: Array) -> tuple[
 
 
 def _arm(rng: Rng) -> Joint:
-    """An arm with two flexible joints; which one is in the log is drawn. The reference of the tip
-    is below the floor for some of the time, but not at the beginning."""
+    """Draws an arm with two flexible joints, one of which is in the log. The reference position of
+    the tip is below the floor for some of the time, but not at the beginning."""
     links = _links(rng)
     loads = _loads(links)
     quarter = np.full(1, math.pi / 2)

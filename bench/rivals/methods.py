@@ -1,4 +1,4 @@
-"""The methods that are compared, by name: those of this package, and least squares.
+"""Defines the compared methods by name: methods of this package, and least squares.
 
 All methods model the spring as an odd cubic polynomial in the deformation, because an owner does
 not know whether a spring hardens. If the stiffness is variable, the coefficients are quadratic in
@@ -29,12 +29,12 @@ N = 2  # number of the powers of the deformation
 
 
 def _m(log: JointLog) -> int:
-    """Number of the powers of the position of the stiffness motor."""
+    """Returns the number of the powers of the position of the stiffness motor."""
     return 3 if log.theta_c.any() else 1
 
 
 def _travel(log: JointLog) -> float:
-    """Range of the stiffness motor [rad]: its travel in this log, which an owner knows."""
+    """Returns the travel of the stiffness motor in this log [rad], which an owner knows."""
     return float(np.abs(log.theta_c).max()) or 1.0
 
 
@@ -51,7 +51,7 @@ def _spring(log: JointLog, phi: Array) -> tuple[Array, Array]:
 
 
 def _filtered_regression(log: JointLog) -> Estimate:
-    """On line: the estimate at each sample is from those up to it.
+    """Estimates on line: the estimate at each sample depends only on samples up to then.
 
     Parameters are as docs/filtered-regression.md advises: ranges, priors and noise are from the
     data sheet, and all others have start values.
@@ -61,7 +61,7 @@ def _filtered_regression(log: JointLog) -> Estimate:
 
 
 def _paper2011(log: JointLog) -> Estimate:
-    """On line, without a standard deviation, and never confident.
+    """Estimates on line by Paper2011, without standard deviation or confidence.
 
     F. Flacco, A. De Luca, I. Sardellitti, N. G. Tsagarakis, "Robust estimation of variable
     stiffness in flexible joints", Proc. IEEE/RSJ IROS 2011: residual (6), (8), kinematic Kalman

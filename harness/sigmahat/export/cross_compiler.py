@@ -1,4 +1,4 @@
-"""Binaries of an FMU for every platform, compiled on any of these platforms."""
+"""Compiles the binaries of an FMU for all platforms, on any of these platforms."""
 
 import os
 import shutil
@@ -83,7 +83,7 @@ def compile_shared(
 def release(fmu: Path, out: Path, cache: Path) -> None:
     """Write a copy of an FMU with binaries for every platform instead of its own binaries.
 
-    All are compiled from the sources in the FMU; ``cache`` and errors as ``compile_files``.
+    The sources in the FMU are compiled; ``cache`` and errors as ``compile_files``.
     """
     with TemporaryDirectory() as unpacked:
         folder = Path(fmpy.extract(str(fmu), unzipdir=unpacked))

@@ -126,8 +126,7 @@ def _wrap(steps: Array, span: float) -> float | None:
 
 
 def is_clock(meaning: Meaning, facts: Facts, values: Array) -> bool:
-    """Returns whether a column contains times, by its name or because its values increase evenly.
-    """
+    """Returns whether a column contains times, by its name or by evenly increasing values."""
     least = _NAMED if meaning.quantity == "time" else _MOSTLY
     if facts.text or not facts.varies or facts.increasing < least or facts.wrap is not None:
         return False

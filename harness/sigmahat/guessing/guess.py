@@ -80,8 +80,7 @@ def guess(columns: Columns) -> dict[str, JointGuess]:
 
 
 def one_joint(log: Log, joints: Mapping[str, JointGuess], name: str) -> JointGuess:
-    """Returns the joint of the given name. Raises LogError, which lists all joints, for a wrong
-    name."""
+    """Returns the joint of the given name. Raises LogError with all names for a wrong name."""
     short = re.sub(r"^(joint|axis|j)_?(?=\d)", "", name.lower())
     for each, joint in joints.items():
         if each.lower() in (name.lower(), short):

@@ -40,8 +40,7 @@ class Roles:
 
 
 def assign(columns: Sequence[Column], T: float) -> Roles:
-    """Assigns the columns of one joint to ports; windows of the columns have samples T apart [s].
-    """
+    """Assigns the columns of one joint to ports; samples in the column windows are T apart [s]."""
     moving = _few([each for each in columns if each.facts.varies and len(each.window)])
     positions = _positions(moving, T)
     ports: dict[str, Role] = dict(_pair(positions))

@@ -1,4 +1,4 @@
-"""Sources and sinks by their names on the command line: UDP, TCP, standard input, or a log."""
+"""Creates sources and sinks by their names on the command line, such as UDP, TCP, or a log."""
 
 from __future__ import annotations
 
@@ -61,11 +61,11 @@ class Endpoints:
             raise self._cannot_listen(name, error.strerror or error) from error
 
     def replay(self, log: Path) -> Source:
-        """The source for a recorded log. Raises LogError if the log lacks a column."""
+        """Creates the source for a recorded log. Raises LogError for a missing column."""
         return _replay(open_log(log), self._session)
 
     def sink(self, name: str) -> Sink:
-        """The sink of this name; for Foxglove, the layout is also written."""
+        """Creates the sink of the given name; for Foxglove, the layout is also written."""
         kind, _, rest = name.partition(":")
         if name == "ros2":
             return self._ros2.publish()
@@ -105,7 +105,7 @@ def _address(option: str, text: str) -> _Address:
 
 
 def _udp(address: _Address, decoders: _Decoders) -> Source:
-    """A datagram is a message. Raises OSError if the address is not available."""
+    """Creates a source of UDP datagrams. Raises OSError if the address is not available."""
     bound = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     bound.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _BUFFER)
     bound.bind(address)
@@ -119,7 +119,7 @@ def _udp(address: _Address, decoders: _Decoders) -> Source:
 
 
 def _tcp(address: _Address, decoders: _Decoders) -> Source:
-    """A line is a message; any number of senders connect. Raises as _udp."""
+    """Creates a source of lines from any number of TCP senders. Raises OSError as _udp does."""
     server = socket.create_server(address)
 
     def read(inbox: Inbox) -> None:
@@ -153,12 +153,12 @@ def _lines(file: BinaryIO, inbox: Inbox, decoder: Decoder) -> None:
 
 
 def _replay(log: Log, session: Session) -> Source:
-    """The used columns of a log, in real time."""
+    """Creates a source that replays the used columns of a log in real time."""
     used: dict[str, tuple[float, list[str]]] = {}
     for joint in session.joints:
         for name, port in joint.ports.items():
             time_column = joint.time_column(name)
-            # Rows without a time are a period of the estimator apart.
+            # Rows without a time column have the sample period of the estimator.
             step = session.clocks[time_column].seconds if time_column else joint.T
             columns = [port.port.column] if port.port.column else []
             used.setdefault(time_column, (step, []))[1].extend(columns)
@@ -178,7 +178,7 @@ def _replay(log: Log, session: Session) -> Source:
 def _rows(
     log: Log, time_column: str, period: float, columns: Collection[str]
 ) -> Iterator[tuple[float, Columns]]:
-    """Times [s] and columns of the rows of a log that have a time.
+    """Yields time [s] and columns of each row of a log that has a time.
 
     period  time between rows without a time column; else unit of the time column [s]
     """
@@ -193,7 +193,7 @@ def _rows(
 
 
 def _send_udp(address: _Address) -> Sink:
-    """A datagram for each tick, as PlotJuggler reads it: {"timestamp": t, "elbow": {...}}.
+    """Creates a sink of UDP datagrams for PlotJuggler: {"timestamp": t, "elbow": {...}}.
 
     A missing receiver is no error.
     """

@@ -109,13 +109,13 @@ PLANT, NOMINAL = "plant", "nominal"
 
 
 def source_and_variable(signal: str) -> tuple[str, str]:
-    """The two parts of a signal."""
+    """Splits the name of a signal into source and variable."""
     source, _, variable = signal.rpartition(".")
     return source, variable
 
 
 def signal_of(recording: Recording, signal: str) -> NDArray[Any]:
-    """The values of a signal, shape (N + 1,). Raises KeyError if it was not recorded."""
+    """Returns the values of a signal, shape (N + 1,). Raises KeyError for an unrecorded signal."""
     source, variable = source_and_variable(signal)
     if source == NOMINAL:
         return nominal_awas(recording)[variable]

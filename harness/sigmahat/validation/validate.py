@@ -1,4 +1,4 @@
-"""The job of `sigmahat validate`: compares another log of a joint with what was learned before."""
+"""The job of `sigmahat validate`: compares another log of a joint with an earlier estimate."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _SHORTEST = 2.0
 
 @dataclass(frozen=True)
 class TorqueError:
-    """Predicted less measured torque of the spring."""
+    """Difference of predicted and measured torque of the spring."""
 
     rms: float  #: Root mean square of the error [N.m].
     std: float  #: Standard deviation of the measured torque [N.m].
@@ -106,7 +106,7 @@ def _below(values: Array, used: NDArray[np.bool_], T: float) -> Array:
 
 @dataclass(frozen=True)
 class Agreement:
-    """The stiffness that was learned before, compared with the stiffness of a log alone."""
+    """Comparison of the stiffness from earlier logs with the stiffness from one log alone."""
 
     before: tuple[float, float]
     """Stiffness learned before, and half the width of its interval; both are medians [N.m/rad]."""
@@ -153,7 +153,7 @@ def agreement(
 
 @dataclass(frozen=True)
 class Validation:
-    """Comparison of a log with what was learned before."""
+    """Comparison of a log with the estimate from earlier logs."""
 
     log: Path  #: The file.
     configuration: Path  #: File of the configuration of the estimator.
