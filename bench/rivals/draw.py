@@ -40,7 +40,7 @@ LOG_STICTION_TIME: Range = (1e-3, 1e-2)  # [s]
 
 # Friction of the joint, with one of the models M1 to M6. Torques by the peak torque.
 LOG_DRY: Range = (0.005, 0.08)
-STATIC_SHARE: Range = (0.0, 0.6)  # share of the dry friction at rest that motion takes away
+STATIC_SHARE: Range = (0.0, 0.6)  # fraction of the dry friction at rest that vanishes in motion
 LOG_V_S: Range = (0.05, 2.0)  # [rad/s]
 ALPHA: Range = (1.0, 3.0)
 LOAD: Range = (0.0, 0.1)
@@ -50,20 +50,20 @@ QUADRATIC: Range = (0.0, 0.05)  # by 1 / peak
 LOG_STIFFNESS: Range = (100.0, 10000.0)  # [N.m/rad]
 LOG_STIFFNESS_VARIABLE: Range = (100.0, 400.0)  # at the lowest tension [N.m/rad]
 LOG_STIFFNESS_ARM: Range = (500.0, 10000.0)  # [N.m/rad]
-HARDENING: Range = (0.0, 0.5)  # more stiffness at the largest deformation, in half of the joints
+HARDENING: Range = (0.0, 0.5)  # largest relative increase of stiffness, half of the joints
 DAMPING_RATIO: Range = (0.002, 0.03)  # of the link on its spring, motor held
 LOG_LINK: Range = (0.05, 1.0)  # [kg.m2]
-LOG_LOAD_BY_MOTOR: Range = (0.25, 8.0)  # inertia of the load by that of the motor behind the gear
+LOG_LOAD_BY_MOTOR: Range = (0.25, 8.0)  # load inertia divided by motor inertia, at the gear output
 FREQUENCY: Range = (2.0, 25.0)  # of the link on its spring, motor held [Hz]
 
 # The tendons.
 LEVER: Range = (0.05, 0.08)  # [m]
 EYELET_BY_LEVER: Range = (2.0, 3.0)
 SPREAD: Range = (0.3, 0.7)  # [rad]
-STIFFEST: Range = (1.5, 4.0)  # stiffness at the highest tension by that at the lowest
-OF_TENDONS: Range = (0.1, 0.4)  # share of their stiffness in that of the joint at the lowest
+STIFFEST: Range = (1.5, 4.0)  # stiffness at the highest tension divided by stiffness at the lowest
+OF_TENDONS: Range = (0.1, 0.4)  # fraction of the joint stiffness that tendons cause
 RANGE_THETA_C: Range = (1.0, 6.0)  # [rad]
-KNOTS = 2.5  # between them the stiffness motor turns evenly [s]
+KNOTS = 2.5  # time between knots; the stiffness motor moves linearly in between [s]
 
 # The arm.
 LENGTHS: Range = (0.25, 0.45)  # [m]
@@ -71,32 +71,32 @@ LOG_MASS_1: Range = (0.5, 2.5)  # [kg]
 LOG_MASS_2: Range = (0.6, 3.0)  # with its load [kg]
 CENTRE: Range = (0.4, 0.7)  # by the length
 POSE: Range = (0.2, 1.2)  # of both motors, around which they move [rad]
-GRAVITY_KNOWN: Range = (0.9, 1.1)  # what the drives make up for, by what is there
+GRAVITY_KNOWN: Range = (0.9, 1.1)  # compensated gravity torque divided by true torque
 TIP = 0.02  # radius [m]
-HOLDS: float = 1.8  # peak torque by the largest torque of gravity, at least
-TOUCHES: Range = (0.05, 0.25)  # share of the time for which the tip is asked to be in the floor
+HOLDS: float = 1.8  # least ratio of peak torque to the largest gravity torque
+TOUCHES: Range = (0.05, 0.25)  # fraction of the time with a reference of the tip below the floor
 
 # Instruments and log.
-BITS = (14, 19)  # of the encoders, of the link's and, behind the gear, of the motor's
-COUNTS = 30  # of both encoders for the expected deformation, at least
+BITS = (14, 19)  # resolution of the encoders of link and motor, at the gear output
+COUNTS = 30  # least number of encoder counts in the expected deformation
 LOG_NOISE: Range = (0.005, 0.03)  # by the peak torque
 DELAY: Range = (0.0, 2e-3)  # [s]
 LAG: Range = (2e-4, 6e-4)  # [s]
-COULOMB_KNOWN: Range = (1.0, 2.0)  # largest plausible value over true value
-MARGIN: Range = (1.05, 1.5)  # expected maximum over true maximum, of deformation and torque
+COULOMB_KNOWN: Range = (1.0, 2.0)  # largest plausible value divided by true value
+MARGIN: Range = (1.05, 1.5)  # expected maximum divided by true maximum, of deformation and torque
 
 # What the drives do.
-FADE = 1.0  # [s] that a motion takes to begin
+FADE = 1.0  # duration of the smooth start of a motion [s]
 EFFORT: Range = (0.4, 0.8)  # of the peak torque
 LINES = 10  # of a multisine
 LOWEST = 0.3  # line [Hz]
-HIGHEST: Range = (0.6, 1.3)  # line of a torque by the frequency of the link on its spring
+HIGHEST: Range = (0.6, 1.3)  # highest torque frequency divided by link frequency
 BANDWIDTH: Range = (1.5, 4.0)  # of position control [Hz]
 LARGEST_SPEED = 500.0  # of a motor [rad/s]
-LARGEST_GAIN = 60.0  # kd by inertia, so that control is stable in spite of delays [1/s]
+LARGEST_GAIN = 60.0  # kd divided by inertia, for stable control with delays [1/s]
 LARGEST_SWING: Range = (0.3, 1.0)  # [rad]
-CENTRING = 0.3  # bandwidth of what keeps a joint near zero while a torque is fed forward [Hz]
-SPRING_STANDS = 1.5  # torque of the spring by that of the motor at its peak, at most
+CENTRING = 0.3  # bandwidth of position control in addition to a fed-forward torque [Hz]
+SPRING_STANDS = 1.5  # largest spring torque divided by the peak torque of the motor
 LARGEST_PHI = 0.2  # [rad]
 
 

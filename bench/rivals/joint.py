@@ -83,8 +83,8 @@ class Tendons:
     """Two tendons from a lever on the motor's flange to a slider on the link, mirror images.
 
     Each tendon begins on the flange at the radius `lever`, at the angle +-`spread` from the link.
-    It passes an eyelet on the link at the radius `eyelet`, and ends on the slider. When the slider
-    moves out by x, both get longer by x: the tension rises, and with it the stiffness of the joint.
+    The tendon passes an eyelet on the link at the radius `eyelet`, and ends on the slider. If the
+    slider moves out by x, both tendons get longer by x: tension and joint stiffness increase.
     """
 
     lever: float  # [m]
@@ -129,7 +129,7 @@ class Link:
 class Drive:
     """Command of a motor: u = feed_forward + kp (reference - theta) - kd theta', within +-peak.
 
-    theta is what the encoder reads, theta' its difference through a low pass of the first order.
+    theta is the encoder position, theta' the difference of theta after a first-order low pass.
     """
 
     feed_forward: Array  # [N.m] at every sample

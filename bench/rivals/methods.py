@@ -78,7 +78,7 @@ def _paper2011(log: JointLog) -> Estimate:
 
 
 def _on_line(log: JointLog, start: dict[str, Value]) -> Estimate:
-    """Results of the estimator of this package. `start` has the parameters of the method."""
+    """Runs the estimator of this package; `start` has the parameters of the method."""
     of_log = {"samplePeriod": log.sample_period, "rls.n": N, "rls.m": _m(log)}
     set_point = {"setPoint.offset": 0.0, "setPoint.scale": 1.0}
     estimator = sigmahat.Estimator(
@@ -144,7 +144,7 @@ def _regression(log: JointLog) -> tuple[Array, Array, Array]:
 
 
 def _dynamics(log: JointLog) -> float:
-    """The frequency of the dynamics [Hz]. Raises ValueError if the motor does not move."""
+    """Computes the frequency of the dynamics [Hz]. Raises ValueError if the motor does not move."""
     T, counts = log.sample_period, log.known["encoder.theta"]
     segment = min(len(log.theta), round(8 / T))
     f, density = signal.welch(log.theta, 1 / T, nperseg=segment, detrend="linear")
@@ -158,14 +158,14 @@ def _dynamics(log: JointLog) -> float:
 
 
 def _solve(X: Array, y: Array, known: Mapping[str, float]) -> tuple[Array, Array]:
-    """Coefficients and covariance. The variance of the rows is that of their residual."""
+    """Computes coefficients and covariance. The variance of the rows follows from the residual."""
     scale = np.sqrt(np.mean(X**2, axis=0))
     X = X / scale
     mean, information = np.zeros(len(scale)), np.zeros(len(scale))  # of the data sheet
     mean[:KNOWN] = np.array([known["motor.B"], known["motor.D_theta"]]) * scale[:KNOWN]
     information[:KNOWN] = (np.array([STD_B, STD_D]) * mean[:KNOWN]) ** -2
     beta = np.linalg.lstsq(X, y)[0]
-    for _ in range(2):  # the first time the residual is that without the rows of the data sheet
+    for _ in range(2):  # the first residual is computed without the rows of the data sheet
         residual = y - X @ beta
         variance = residual @ residual / (len(y) - len(beta))
         precision = X.T @ X / variance + np.diag(information)

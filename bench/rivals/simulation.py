@@ -28,11 +28,11 @@ FLANGE = 0.002
 this body without weight, whose acceleration is equal to the acceleration of the flange."""
 SLIDER_MASS = 0.1  # [kg]
 SLIDER_ARMATURE = 5.0  # of its screw and motor [kg]
-SERVO = 40.0  # stiffness of the servo of the slider, by that of a tendon
-DAMPED = 1.4  # damping of that servo, by the geometric mean of its stiffness and armature
+SERVO = 40.0  # stiffness of the slider servo divided by the stiffness of a tendon
+DAMPED = 1.4  # servo damping divided by the geometric mean of servo stiffness and armature
 
 Run = dict[str, Array]
-"""Of the observed joint, without errors, one entry a sample; torques behind the gear, on the motor.
+"""True signals of the observed joint, one entry per sample; torques are at the gear output.
 
 theta, phi [rad], theta_dot [rad/s], theta_ddot [rad/s2], dry friction that the engine applied,
 damper and spring (tau_e) [N.m], stiffness [N.m/rad], theta_c [rad]; on the motor's axis: torque,
@@ -158,7 +158,7 @@ class _Physics:
     """A joint in MuJoCo."""
 
     def __init__(self, joint: Joint) -> None:
-        import mujoco  # what is drawn needs no MuJoCo
+        import mujoco  # imported here, because drawing a joint needs no MuJoCo
 
         self._engine = mujoco
         self._model = mujoco.MjModel.from_xml_string(_mjcf(joint))

@@ -49,7 +49,7 @@ def performances(scenario: Scenario, recording: Recording) -> dict[str, Performa
 
 @dataclass(frozen=True)
 class Row:
-    """One stiffness of a joint in one case, judged by one index."""
+    """A stiffness of a joint in one case, evaluated by one index."""
 
     joint: Joint
     case: Case

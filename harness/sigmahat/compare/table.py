@@ -55,7 +55,7 @@ def case_and_part(row: Row) -> str:
 
 
 def table(rows: Sequence[Row]) -> str:
-    """Both methods side by side, as text, a part for each group of joints; "-": not defined.
+    """Formats both methods side by side as text, by group of joints; "-": not defined.
 
     For FilteredRegression alone: sigma_std, the percentage of instants with an error of at most
     1.96 sigma_std, and the motor data at the end.

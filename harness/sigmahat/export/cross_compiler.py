@@ -29,7 +29,7 @@ PLATFORMS_3 = {
 }
 """Platforms of FMI 3.0, which also has names for processors of the ARM family."""
 
-# Without contraction to fused operations, every machine computes the same numbers. Symbols and
+# Without fused operations (contraction), all machines compute the same numbers. Symbols and
 # debug information would contain paths (-s removes both).
 CODE = ("-std=c99", "-O2", "-ffp-contract=off", "-fvisibility=hidden", "-s")
 FLAGS = (*CODE, "-fPIC", "-shared")

@@ -1,7 +1,7 @@
 """Completes the model description of an FMU from a template and the variables in the template.
 
 This module adds value references, display units, the model structure, source files, and the GUID.
-It removes units that no variable has.
+Units that no variable has are removed.
 """
 
 import copy

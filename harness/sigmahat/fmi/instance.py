@@ -334,7 +334,7 @@ def _on_message(
         slave.errors.append(text)
 
 
-# One logger for all slaves, for the whole process: FMPy's proxy stores only the last logger, and
+# One logger serves all slaves of the process: FMPy's proxy stores only the last logger, and
 # calls this logger for every FMU.
 _LOGGER = fmi2.fmi2CallbackLoggerTYPE(_on_message)
 

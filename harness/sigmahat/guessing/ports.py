@@ -32,7 +32,7 @@ class PortGuess:
     why: str  # reason for the choice of the column
     low: float
     high: float  # range of its values
-    unit: str | None  # None if the unit cannot be guessed: then the user has to fill in `scale`
+    unit: str | None  # None if the unit cannot be guessed, and the user has to fill in `scale`
     wrap: float | None
     """Period of a counter that starts again, in the unit of the column; None without a period."""
     time: str | None  # the time column of the port, if it differs from the time column of the joint

@@ -116,7 +116,7 @@ class Sheet:
     units: dict[str, Text]
     """Units of the numbers with these keys in the file; an interval has the unit of its value."""
     fmu: FmuId
-    logs: list[LearnedLog]  # logs from which the estimator has learned, in this order
+    logs: list[LearnedLog]  # logs that the estimator has processed, in this order
     configuration: Source
     method: Text
     modality: Text

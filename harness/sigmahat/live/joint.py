@@ -235,7 +235,7 @@ class _Counter:
         self._ports = configuration.ports
         self._most = configuration.parameters.get("range.phi")
         both, self._period = counter(self._ports)
-        self._both = [list(self._ports).index(name) for name in both]  # what is put right is first
+        self._both = [list(self._ports).index(name) for name in both]  # the corrected port is first
         self._last: NDArray[Any] | None = None
         self._was_missing = False
         self._total = self._at_start = 0

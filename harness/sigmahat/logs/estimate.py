@@ -69,7 +69,7 @@ class Estimate:
     curve: Curve  #: Torque and stiffness against the deformation.
     changes: Sequence[StiffnessChange]  #: Changes that were detected.
     notes: Sequence[str]  #: Sentences about the processing of the samples of the log.
-    learned_from: Sequence[str] = ()  #: Logs from which the estimator has learned before this log.
+    learned_from: Sequence[str] = ()  #: Earlier logs that the estimator has processed.
     series: Series | None = None
     """The outputs at each tick; None if they were written into a folder."""
 

@@ -178,7 +178,7 @@ class Replay:
     def __init__(
         self, slave: Slave, log: Log, configuration: Configuration, learned: Learned | None = None
     ) -> None:
-        """Initialises the slave, restores the learned state in it, and samples the log.
+        """Initialises the slave, restores the state from earlier logs, and samples the log.
 
         Raises LogError if log or state do not fit the configuration, FmuError if the FMU refuses.
         """

@@ -29,7 +29,7 @@ class PlantEquations:
         plant.derivative(v, force / mass)
         plant.output("x", x)
 
-    Names of inputs, parameters and outputs are those of the FMU's variables. Their units, start
+    Names of inputs, parameters and outputs are the names of the FMU variables. Their units, start
     values and ranges are in ``modelDescription/NAME.xml``, or for `write_plant_fmu` in the
     `PlantVariable` of each variable. Expressions are CasADi ``SX``.
     """
