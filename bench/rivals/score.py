@@ -14,7 +14,7 @@ QUANTILE = 1.96  # the interval is the estimate and this many standard deviation
 WRONG = 0.2  # relative error above which a confident estimate is wrong
 SCORES = ("error", "width", "coverage", "interval_score", "confident", "wrong")
 RESULT = ("kind", "seed", "method", "seconds", "remark", *SCORES)
-"""Names in the result of a method on a log."""
+"""Names of the values in the result of a method for a log."""
 HEAD = (
     *("joint", "method", "estimates", "error %", "interval width %", "coverage %"),
     *("interval score %", "lowest score %", "time s", "confident %", "confident and wrong %"),

@@ -253,7 +253,7 @@ class Columns:
 
     @property
     def unreadable(self) -> list[str]:
-        """Error messages for columns without numbers whose names are names of signals."""
+        """Error messages on columns with names of signals but without numbers."""
         texts = [each for each in self.signals if each.facts.text]
         return [each.facts.text for each in texts if each.meaning.quantity is not None]
 

@@ -118,7 +118,7 @@ _SLOW = 1e-3  # [rad/s] below this velocity, the Coulomb friction is smaller
 
 @dataclass(frozen=True)
 class Ranges:
-    """The set of joints: each quantity between two values, drawn evenly over its logarithm.
+    """The set of joints: each quantity between two values, drawn from a log-uniform distribution.
 
     The angle is drawn evenly.
     """

@@ -53,7 +53,7 @@ class Comparison:
 
 @dataclass(frozen=True)
 class Scenario:
-    """One run of a plant and its estimators."""
+    """A simulation of a plant and its estimators."""
 
     name: str  #: Name for `sigmahat reproduce --scenario`, and for folders.
     description: str  #: One line.

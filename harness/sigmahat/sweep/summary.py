@@ -56,7 +56,7 @@ def means(sweep: SweepTable) -> list[Mean]:
 
 
 def summary_columns(sweep: SweepTable) -> list[SummaryColumn]:
-    """The summary as text: mean +- half width of the 95 % interval.
+    """Formats the summary as text: mean +- half width of the 95 % interval.
 
     The columns are the indices in the tables of the scenarios.
     """

@@ -111,7 +111,7 @@ class Agreement:
     before: tuple[float, float]
     """Stiffness from earlier logs, and half the width of its interval; medians [N.m/rad]."""
     alone: tuple[float, float]
-    """Stiffness of the log alone, and half the width of its interval; both are medians."""
+    """Stiffness from one log alone, and half the width of its interval; both are medians."""
     alone_in_before: float
     """Fraction of instants at which the interval of `before` contains the stiffness of `alone`."""
     before_in_alone: float

@@ -139,7 +139,7 @@ def _multisine(
 ) -> Sines:
     """Sines at random frequencies: one sine in each of equal parts of the band [Hz] on a log axis.
 
-    The amplitudes add up to the peak. The number of sines is between the two counts.
+    The sum of the amplitudes is the peak. The number of sines is between the two counts.
     """
     n = int(rng.integers(count[0], count[1] + 1))
     low, high = map(math.log, band)
