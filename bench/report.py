@@ -1,4 +1,4 @@
-"""Tables of the measured times."""
+"""Formats tables of the measured times."""
 
 import platform
 import re
@@ -9,19 +9,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 Times = Mapping[str, NDArray[np.float64]]
-"""By name of the subject: time for one piece of work in each round [ns]. NaN in a round in which
-the subject did not run."""
+"""Time for one unit of work in each round [ns], by name of the benchmark subject. The time is NaN
+in a round in which the subject did not run."""
 
 FMPY = "simulate_fmu of FMPy"
 
 
 def ratio(times: Times, one: str, other: str) -> float:
-    """Median over the rounds of the ratio of two times of the same round."""
+    """Computes the median of the ratio of two times, which are measured in the same rounds."""
     return float(np.nanmedian(times[one] / times[other]))
 
 
 def _requirements(times: Times) -> Iterator[str]:
-    """Rows of the table: quantity, required value, measured value, whether it is met."""
+    """Yields rows of a table: quantity, required and measured value, and whether they agree."""
 
     def at_most(what: str, value: float, limit: float, unit: str) -> str:
         measured = f"{value:.{2 if abs(value) < 100 else 0}f} {unit}"
@@ -63,7 +63,7 @@ def _duration(ns: float) -> str:
 
 
 def table(times: Times) -> str:
-    """Both tables as Markdown."""
+    """Formats the tables of requirements and of all times as Markdown."""
     lines = [f"Measured on {_processor()}.", "", "| quantity | required | measured | met |"]
     lines += ["|---|---|---|---|", *_requirements(times)]
 

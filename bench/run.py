@@ -19,7 +19,7 @@ SAMPLES = 10000  # one period of the torques
 def verify(library: ctypes.CDLL) -> None:
     """Checks that all subjects compute the same results.
 
-    Raises AssertionError, which names the subject that does not.
+    Raises AssertionError, which names the subject with other results.
     """
     for size in subjects.SIZES:
         F, y = subjects.regression(size, 2000)
@@ -39,15 +39,15 @@ def verify(library: ctypes.CDLL) -> None:
 
 
 def measure(every: list[Subject], rounds: int) -> Times:
-    """Time for one piece of work of each subject in each round [ns].
+    """Measures the time for one unit of work of each subject in each round [ns].
 
-    NaN in a round in which the subject did not run.
+    The time is NaN in a round in which the subject did not run.
     """
     times = {subject.name: np.full(rounds, np.nan) for subject in every}
     for subject in every:
         subject.batch()  # warms caches and branch predictors, loads files
     for k in range(rounds):
-        # Each round begins with another subject, so the order is not always the same.
+        # Each round begins with another subject, so that the order varies.
         for subject in every[k % len(every) :] + every[: k % len(every)]:
             if k % subject.every == 0:
                 begin = time.perf_counter_ns()

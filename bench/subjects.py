@@ -1,4 +1,4 @@
-"""The subjects whose time is measured. Each repeats the same work on the same inputs."""
+"""Creates the benchmark subjects. Each subject repeats the same work on the same inputs."""
 
 import ctypes
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -30,34 +30,34 @@ MEASURED = [f"{name}_measured" for name in ("theta", "q", "theta_c", "tau", "tau
 """Outputs of the plant that the estimator measures."""
 OUTPUTS = ("sigma", "tau_e", "theta_dot")
 TORQUES = {"tau": Sine(0.3, 0.1), "tau_c": Sine(8.0, 0.1)}
-"""Of scenario table1."""
+"""Torques of the motors in the scenario table1."""
 
 
 @dataclass(frozen=True)
 class Subject:
-    """A piece of work whose time is measured."""
+    """A benchmark subject: a unit of work whose time is measured."""
 
     name: str
     batch: Callable[[], object]
-    """Does the piece of work `count` times."""
+    """Function that does the unit of work `count` times."""
     count: int
     every: int = 1
-    """The subject runs only in every round whose number is a multiple of this."""
+    """Distance of the rounds in which the subject runs."""
 
 
 def doubles(array: Array) -> Any:
-    """Pointer to a contiguous array. The pointer is valid only as long as the array exists."""
+    """Returns a pointer to a contiguous array, which is valid only as long as the array exists."""
     assert array.flags.c_contiguous and array.dtype == np.float64
     return array.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
 
 
 class Native:
-    """An object of the shared library that processes samples; its outputs after the last one."""
+    """An object of the shared library that processes samples, with its last outputs."""
 
     def __init__(
         self, library: ctypes.CDLL, kind: str, outputs: int, maker: str, *arguments: Any
     ) -> None:
-        """<maker>_start makes it, <kind>_run runs it. Raises RuntimeError if it is refused."""
+        """Creates the object by <maker>_start. Raises RuntimeError for refused arguments."""
         start, self._run = library[f"{maker}_start"], library[f"{kind}_run"]
         start.restype = ctypes.c_void_p
         self._state = ctypes.c_void_p(start(*arguments))
@@ -73,7 +73,7 @@ class Native:
 
 
 def regression(size: int, samples: int) -> tuple[Array, Array]:
-    """F and y to identify a filter with `size` taps from white noise, with noise on the output.
+    """Returns regressors F and outputs y of a filter with `size` taps, white noise as input.
 
     The regressor is a delay line: F(k) = (x(k), x(k-1), ...).
     """
@@ -85,12 +85,12 @@ def regression(size: int, samples: int) -> tuple[Array, Array]:
 
 
 def recursion(library: ctypes.CDLL, make: str, size: int) -> Native:
-    """Least squares by one of MAKES, whose outputs are its estimate, or the covariance alone."""
+    """Creates recursive least squares by one of MAKES, or an update of the covariance only."""
     return Native(library, "recursion", size, make, size, ctypes.c_double(P_0))
 
 
 def least_squares(library: ctypes.CDLL, size: int, samples: int) -> Iterator[Subject]:
-    """All recursions, and the covariance update alone as the reference."""
+    """Yields all recursions, and as the reference an update of the covariance only."""
     data = regression(size, samples)
     for make in (*MAKES, "covariance"):
         yield Subject(f"{make} {size}", partial(recursion(library, make, size).run, *data), samples)
@@ -100,19 +100,19 @@ def least_squares(library: ctypes.CDLL, size: int, samples: int) -> Iterator[Sub
 
 
 def measurements(samples: int) -> Array:
-    """Measurements of the estimator at the begin of scenario table1 [size: samples x 5]."""
+    """Simulates the first measurements of the scenario table1 [size: samples x 5]."""
     plant = replace(SCENARIOS["table1"].plant, record=MEASURED)
     run = simulate(plant, {}, T, samples - 1)
     return np.column_stack([run.plant[name] for name in MEASURED])
 
 
 def tick(library: ctypes.CDLL, method: str) -> Native:
-    """The estimator of the C library, called without an FMU."""
+    """Creates the estimator of the C library, which is called without an FMU."""
     return Native(library, "tick", len(OUTPUTS), "tick", method.encode())
 
 
 class Steps:
-    """An FMU in the loop of the package: for each row of inputs a step, and its outputs."""
+    """An FMU in the sample loop of the package, with one step for each row of inputs."""
 
     def __init__(
         self,
@@ -122,7 +122,7 @@ class Steps:
         u: Array,
         slopes: bool = False,
     ) -> None:
-        """slopes: inputs are linear over a step and not held."""
+        """slopes: inputs are linear in a step instead of constant."""
         slave = Slave(fmu, "bench")
         slave.initialize({})
         references = fmu.references(inputs, "input")
@@ -136,13 +136,13 @@ class Steps:
         self._loop.get(slave, "Real", fmu.references(outputs), self.outputs)
 
     def run(self) -> None:
-        """Makes a step for each row, from where the last one ended."""
+        """Makes one step for each row, beginning at the present time of the FMU."""
         self._loop.run(0, self.count)
         self._times[:, 0] += self.count * T
 
 
 def ticks(library: ctypes.CDLL, z: Array) -> Iterator[Subject]:
-    """The tick of the C library, and the same in the FMU."""
+    """Yields the tick of the estimator in the C library, and the same tick in the FMU."""
     for method in METHODS:
         yield Subject(f"tick {method}", partial(tick(library, method).run, z), len(z))
     fmu = installed("StiffnessEstimator")
@@ -153,7 +153,7 @@ def ticks(library: ctypes.CDLL, z: Array) -> Iterator[Subject]:
 
 
 def plant(samples: int) -> Iterator[Subject]:
-    """Steps of 1 ms of the AwAS with the torques of table1, held or linear over the step."""
+    """Yields steps of 1 ms of the AwAS plant, with constant and with linear torques in a step."""
     t = T * np.arange(samples, dtype=np.float64)
     u = np.column_stack([signal(t) for signal in TORQUES.values()])
     for name, slopes in (("plant, held", False), ("plant, linear", True)):
@@ -162,7 +162,7 @@ def plant(samples: int) -> Iterator[Subject]:
 
 
 def objects(z: Array) -> Iterator[Subject]:
-    """sigmahat.Estimator over arrays: one joint, and many."""
+    """Yields sigmahat.Estimator on arrays: of one joint, and of many joints."""
     columns = dict(zip(MEASUREMENTS, np.ascontiguousarray(z.T), strict=True))
     one = sigmahat.Estimator({}, OUTPUTS)
     yield Subject("Estimator.run", lambda: one.run(**columns), len(z))
@@ -173,7 +173,7 @@ def objects(z: Array) -> Iterator[Subject]:
 
 
 def whole(z: Array) -> Iterator[Subject]:
-    """The estimator FMU over measurements, with all that comes before and after: FMPy and ours."""
+    """Yields complete simulations of the estimator FMU, start and end included: FMPy and ours."""
     t = T * np.arange(len(z))
     names = ("time", *MEASUREMENTS)
     rows = np.rec.fromarrays([t, *z.T], [(name, float) for name in names])
@@ -186,7 +186,7 @@ def whole(z: Array) -> Iterator[Subject]:
         len(z),
         every=20,
     )
-    # The FMU in the place of a plant, so that the measurements are its inputs.
+    # The FMU is used as a plant, so that the measurements are its inputs.
     inputs = {name: partial(_recorded, rows[name]) for name in MEASUREMENTS}
     plant = sigmahat.Plant(str(path), {}, inputs, OUTPUTS)
     yield Subject(
@@ -198,7 +198,7 @@ def whole(z: Array) -> Iterator[Subject]:
 
 
 def table1(steps: int) -> Subject:
-    """The scenario with one estimator, as `sigmahat` runs it, without the start of a process."""
+    """Creates the scenario table1 with one estimator, as `sigmahat` runs it in its process."""
     scenario = SCENARIOS["table1"]
     estimators = {"RESIDUAL": scenario.estimators["RESIDUAL"]}
     run = partial(simulate, scenario.plant, estimators, T, steps)

@@ -1,1 +1,1 @@
-"""FilteredRegression beside other methods, on the logs of joints in MuJoCo."""
+"""Compares FilteredRegression with other methods, on simulated logs of joints in MuJoCo."""

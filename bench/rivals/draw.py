@@ -40,7 +40,7 @@ LOG_STICTION_TIME: Range = (1e-3, 1e-2)  # [s]
 
 # Friction of the joint, with one of the models M1 to M6. Torques by the peak torque.
 LOG_DRY: Range = (0.005, 0.08)
-STATIC_SHARE: Range = (0.0, 0.6)  # share of the dry friction at rest that motion takes away
+STATIC_SHARE: Range = (0.0, 0.6)  # fraction of the dry friction at rest that vanishes in motion
 LOG_V_S: Range = (0.05, 2.0)  # [rad/s]
 ALPHA: Range = (1.0, 3.0)
 LOAD: Range = (0.0, 0.1)
@@ -50,20 +50,20 @@ QUADRATIC: Range = (0.0, 0.05)  # by 1 / peak
 LOG_STIFFNESS: Range = (100.0, 10000.0)  # [N.m/rad]
 LOG_STIFFNESS_VARIABLE: Range = (100.0, 400.0)  # at the lowest tension [N.m/rad]
 LOG_STIFFNESS_ARM: Range = (500.0, 10000.0)  # [N.m/rad]
-HARDENING: Range = (0.0, 0.5)  # more stiffness at the largest deformation, in half of the joints
+HARDENING: Range = (0.0, 0.5)  # largest relative increase of stiffness, half of the joints
 DAMPING_RATIO: Range = (0.002, 0.03)  # of the link on its spring, motor held
 LOG_LINK: Range = (0.05, 1.0)  # [kg.m2]
-LOG_LOAD_BY_MOTOR: Range = (0.25, 8.0)  # inertia of the load by that of the motor behind the gear
+LOG_LOAD_BY_MOTOR: Range = (0.25, 8.0)  # load inertia divided by motor inertia, at the gear output
 FREQUENCY: Range = (2.0, 25.0)  # of the link on its spring, motor held [Hz]
 
 # The tendons.
 LEVER: Range = (0.05, 0.08)  # [m]
 EYELET_BY_LEVER: Range = (2.0, 3.0)
 SPREAD: Range = (0.3, 0.7)  # [rad]
-STIFFEST: Range = (1.5, 4.0)  # stiffness at the highest tension by that at the lowest
-OF_TENDONS: Range = (0.1, 0.4)  # share of their stiffness in that of the joint at the lowest
+STIFFEST: Range = (1.5, 4.0)  # stiffness at the highest tension divided by stiffness at the lowest
+OF_TENDONS: Range = (0.1, 0.4)  # fraction of the joint stiffness that tendons cause
 RANGE_THETA_C: Range = (1.0, 6.0)  # [rad]
-KNOTS = 2.5  # between them the stiffness motor turns evenly [s]
+KNOTS = 2.5  # time between knots; the stiffness motor moves linearly in between [s]
 
 # The arm.
 LENGTHS: Range = (0.25, 0.45)  # [m]
@@ -71,37 +71,37 @@ LOG_MASS_1: Range = (0.5, 2.5)  # [kg]
 LOG_MASS_2: Range = (0.6, 3.0)  # with its load [kg]
 CENTRE: Range = (0.4, 0.7)  # by the length
 POSE: Range = (0.2, 1.2)  # of both motors, around which they move [rad]
-GRAVITY_KNOWN: Range = (0.9, 1.1)  # what the drives make up for, by what is there
+GRAVITY_KNOWN: Range = (0.9, 1.1)  # compensated gravity torque divided by true torque
 TIP = 0.02  # radius [m]
-HOLDS: float = 1.8  # peak torque by the largest torque of gravity, at least
-TOUCHES: Range = (0.05, 0.25)  # share of the time for which the tip is asked to be in the floor
+HOLDS: float = 1.8  # least ratio of peak torque to the largest gravity torque
+TOUCHES: Range = (0.05, 0.25)  # fraction of the time with a reference of the tip below the floor
 
 # Instruments and log.
-BITS = (14, 19)  # of the encoders, of the link's and, behind the gear, of the motor's
-COUNTS = 30  # of both encoders for the expected deformation, at least
+BITS = (14, 19)  # resolution of the encoders of link and motor, at the gear output
+COUNTS = 30  # least number of encoder counts in the expected deformation
 LOG_NOISE: Range = (0.005, 0.03)  # by the peak torque
 DELAY: Range = (0.0, 2e-3)  # [s]
 LAG: Range = (2e-4, 6e-4)  # [s]
-COULOMB_KNOWN: Range = (1.0, 2.0)  # largest plausible value over true value
-MARGIN: Range = (1.05, 1.5)  # expected maximum over true maximum, of deformation and torque
+COULOMB_KNOWN: Range = (1.0, 2.0)  # largest plausible value divided by true value
+MARGIN: Range = (1.05, 1.5)  # expected maximum divided by true maximum, of deformation and torque
 
 # What the drives do.
-FADE = 1.0  # [s] that a motion takes to begin
+FADE = 1.0  # duration of the smooth start of a motion [s]
 EFFORT: Range = (0.4, 0.8)  # of the peak torque
 LINES = 10  # of a multisine
 LOWEST = 0.3  # line [Hz]
-HIGHEST: Range = (0.6, 1.3)  # line of a torque by the frequency of the link on its spring
+HIGHEST: Range = (0.6, 1.3)  # highest torque frequency divided by link frequency
 BANDWIDTH: Range = (1.5, 4.0)  # of position control [Hz]
 LARGEST_SPEED = 500.0  # of a motor [rad/s]
-LARGEST_GAIN = 60.0  # kd by inertia, so that control is stable in spite of delays [1/s]
+LARGEST_GAIN = 60.0  # kd divided by inertia, for stable control with delays [1/s]
 LARGEST_SWING: Range = (0.3, 1.0)  # [rad]
-CENTRING = 0.3  # bandwidth of what keeps a joint near zero while a torque is fed forward [Hz]
-SPRING_STANDS = 1.5  # torque of the spring by that of the motor at its peak, at most
+CENTRING = 0.3  # bandwidth of position control in addition to a fed-forward torque [Hz]
+SPRING_STANDS = 1.5  # largest spring torque divided by the peak torque of the motor
 LARGEST_PHI = 0.2  # [rad]
 
 
 def drawn(kind: str, seed: int) -> Joint:
-    """A joint of one of KINDS; no two kinds share random numbers."""
+    """Draws a joint of one of KINDS; each kind has its own random numbers."""
     draw = (_series_elastic, _variable_stiffness, _arm)[KINDS.index(kind)]
     return draw(np.random.default_rng([seed, KINDS.index(kind), 0]))
 
@@ -119,7 +119,7 @@ def _within(value: float, limits: Range) -> bool:
 
 
 def _until(draw: Callable[[], T], good: Callable[[T], bool]) -> T:
-    """The first draw that is good."""
+    """Repeats a draw until the condition `good` is true, and returns this draw."""
     return next(filter(good, iter(draw, None)))
 
 
@@ -147,7 +147,7 @@ def _friction(rng: Rng, peak: float) -> Friction:
 
 
 def _motor(rng: Rng, load: float, holds: float = 0.0) -> Motor:
-    """A motor for an inertia [kg.m2] that lifts a torque `holds` [N.m]."""
+    """Draws a motor for an inertia `load` [kg.m2] that can hold a torque `holds` [N.m]."""
 
     def draw() -> Motor:
         B = _log(rng, LOG_B)
@@ -169,7 +169,7 @@ def _motor(rng: Rng, load: float, holds: float = 0.0) -> Motor:
 
 
 def _spring(rng: Rng, stiffness: float, load: float, torque: float) -> Spring:
-    """A spring that is linear, or hardens at the deformation under this torque [N.m]."""
+    """Draws a spring that is linear, or hardens at the deformation by the given torque [N.m]."""
     more = _even(rng, HARDENING) * int(rng.integers(2))
     return Spring(
         stiffness, stiffness * more / 3 / (torque / stiffness) ** 2, _damping(rng, stiffness, load)
@@ -197,7 +197,7 @@ def _sheet(rng: Rng) -> dict[str, float]:
 
 
 def _instruments(rng: Rng, peak: float, phi: float) -> Instruments:
-    """Encoders that see the deformation phi [rad]."""
+    """Draws instruments with encoders that can resolve the deformation phi [rad]."""
 
     def encoder() -> int:
         return 1 << int(rng.integers(BITS[0], BITS[1] + 1))
@@ -218,7 +218,7 @@ def _instruments(rng: Rng, peak: float, phi: float) -> Instruments:
 
 @dataclass(frozen=True)
 class _Multisine:
-    """Sum of sines around zero."""
+    """A sum of sines with mean zero."""
 
     frequencies: Array  # [Hz]
     amplitudes: Array
@@ -229,13 +229,13 @@ class _Multisine:
         return 2j * np.pi * self.frequencies.astype(np.complex128)
 
     def harmonics(self, response: Complex) -> Array:
-        """Output of a linear system with this complex response to each line, 0 at rest."""
+        """Computes the output of a linear system, given its complex response to each sine."""
         angles = 2 * np.pi * np.outer(TIMES, self.frequencies) + self.phases
         summed: Array = np.imag(np.exp(1j * angles) @ (self.amplitudes * response))
         return summed
 
     def values(self) -> Array:
-        """At TIMES; it fades in."""
+        """Computes the multisine at TIMES, with an amplitude that rises smoothly from 0."""
         fade = np.clip(TIMES / FADE, 0, 1)
         smooth: Array = fade * fade * (3 - 2 * fade)
         return smooth * self.harmonics(np.ones(LINES, np.complex128))
@@ -251,7 +251,7 @@ def _peak(values: Array) -> float:
 
 
 def _gains(motor: Motor, load: float, bandwidth: float) -> tuple[float, float]:
-    """kp and kd of a motor with a load [kg.m2] for a bandwidth [Hz]."""
+    """Computes the control gains kp and kd of a motor with a load [kg.m2] for a bandwidth [Hz]."""
     omega = 2 * math.pi * bandwidth
     total = (motor.inertia + load) / motor.gear
     kd = min(2 * 0.7 * omega * total, LARGEST_GAIN * motor.B * motor.gear)
@@ -259,7 +259,7 @@ def _gains(motor: Motor, load: float, bandwidth: float) -> tuple[float, float]:
 
 
 def _torque_drive(rng: Rng, motor: Motor, load: float, stiffness: float) -> tuple[Drive, float]:
-    """A multisine of torque, and the deformation of a linear joint under it [rad]."""
+    """Draws a multisine of torque, and computes the deformation of a linear joint [rad]."""
     own_frequency = math.sqrt(stiffness / load) / 2 / math.pi
     sines = _multisine(rng, max(_even(rng, HIGHEST) * own_frequency, 3 * LOWEST))
     s = sines.s  # 2 pi j f
@@ -279,7 +279,7 @@ def _torque_drive(rng: Rng, motor: Motor, load: float, stiffness: float) -> tupl
 def _position_drive(
     rng: Rng, motor: Motor, load: float, stiffness: float, centre: float = 0.0
 ) -> tuple[Drive, float]:
-    """Position control along a multisine, and the deformation by the inertia alone [rad]."""
+    """Draws position control along a multisine, and computes the deformation by inertia [rad]."""
     bandwidth = _even(rng, BANDWIDTH)
     sines = _multisine(rng, bandwidth)
     sines = replace(sines, amplitudes=1 / sines.frequencies)
@@ -297,8 +297,8 @@ def _position_drive(
 
 
 def _single(rng: Rng, load: float, stiffness: float) -> dict[str, Any]:
-    """A joint with one motor, all but its spring; the link is a rod. In half of the cases the axis
-    is horizontal, if the motor can lift the link."""
+    """Draws a joint with one motor and a rod as link, without a spring. In half of the cases the
+    axis is horizontal, if the motor can lift the link."""
     motor = _motor(rng, load)
     length = _even(rng, LENGTHS)
     mass = 3 * load / length**2
@@ -318,7 +318,7 @@ def _single(rng: Rng, load: float, stiffness: float) -> dict[str, Any]:
 
 
 def _series_elastic(rng: Rng) -> Joint:
-    """A series elastic joint, whose spring may harden or is linear."""
+    """Draws a series elastic joint with a linear or hardening spring."""
     load = _log(rng, LOG_LINK)
     stiffness = _stiffness(rng, LOG_STIFFNESS, load)
     parts = _single(rng, load, stiffness)
@@ -345,7 +345,7 @@ def _tendons(rng: Rng, stiffness: float, load: float) -> Tendons:
 
 
 def _variable_stiffness(rng: Rng) -> Joint:
-    """A joint with two tendons, whose stiffness motor turns during the run."""
+    """Draws a joint with two tendons, whose stiffness motor turns during the simulation."""
     load = _log(rng, LOG_LINK)
     stiffness = _stiffness(rng, LOG_STIFFNESS_VARIABLE, load)
     tendons = _tendons(rng, stiffness, load)
@@ -367,15 +367,15 @@ def _links(rng: Rng) -> tuple[Link, Link]:
 
 
 def _loads(links: tuple[Link, Link]) -> tuple[float, float]:
-    """Inertia about both axes, the elbow bent by a right angle [kg.m2]."""
+    """Computes the inertia about both axes, with a right angle at the elbow [kg.m2]."""
     upper, lower = links
     at_elbow = lower.about_axis
     return upper.about_axis + lower.mass * upper.length**2 + at_elbow, at_elbow
 
 
 def _gravity_torques(links: tuple[Link, Link], q_1: Array, q_2: Array) -> tuple[Array, Array]:
-    """Torques that hold the arm at these angles; the second angle is relative to the first link
-    [N.m]."""
+    """Computes the torques that hold the arm at two angles [N.m]; the second angle is relative to
+    the first link."""
     upper, lower = links
     elbow = G * lower.mass * lower.centre * np.sin(q_1 + q_2)
     at_shoulder = G * (upper.mass * upper.centre + lower.mass * upper.length) * np.sin(q_1)
@@ -383,8 +383,8 @@ def _gravity_torques(links: tuple[Link, Link], q_1: Array, q_2: Array) -> tuple[
 
 
 def _arm(rng: Rng) -> Joint:
-    """An arm with two flexible joints; which one is in the log is drawn. The reference of the tip
-    is below the floor for some of the time, but not at the beginning."""
+    """Draws an arm with two flexible joints, one of which is in the log. The reference position of
+    the tip is below the floor for some of the time, but not at the beginning."""
     links = _links(rng)
     loads = _loads(links)
     quarter = np.full(1, math.pi / 2)

@@ -1,4 +1,4 @@
-"""The parts of a joint. `draw.py` draws the values, `simulation.py` builds the joints."""
+"""Data of a simulated joint. `draw.py` draws the values, `simulation.py` builds the joints."""
 
 import math
 from collections.abc import Mapping
@@ -44,7 +44,7 @@ class Friction:
         return self.K_c + self.K_cs
 
     def budget(self, v: float, tau_m: float, tau_e: float) -> float:
-        """Largest torque [N.m] of dry friction at the velocity v behind the gear [rad/s]."""
+        """Computes the largest torque of dry friction [N.m] at the velocity v after the gear."""
         backdriven = abs(tau_e) >= abs(tau_m)
         slow = self.K_cs + abs(self.K_ms * tau_m - self.K_es * tau_e)
         slow += self.K_mq * tau_m * tau_m if backdriven else self.K_eq * tau_e * tau_e
@@ -54,7 +54,7 @@ class Friction:
 
 @dataclass(frozen=True)
 class Motor:
-    """A motor with its gear. All but the last is on the motor's axis."""
+    """A motor with its gear; the values refer to the motor axis."""
 
     gear: float
     B: float  # all inertia that moves with the motor [kg.m2]
@@ -65,7 +65,7 @@ class Motor:
 
     @property
     def inertia(self) -> float:
-        """Behind the gear [kg.m2]."""
+        """Inertia of the motor at the gear output [kg.m2]."""
         return self.B * self.gear**2
 
 
@@ -83,8 +83,8 @@ class Tendons:
     """Two tendons from a lever on the motor's flange to a slider on the link, mirror images.
 
     Each tendon begins on the flange at the radius `lever`, at the angle +-`spread` from the link.
-    It passes an eyelet on the link at the radius `eyelet`, and ends on the slider. When the slider
-    moves out by x, both get longer by x: the tension rises, and with it the stiffness of the joint.
+    The tendon passes an eyelet on the link at the radius `eyelet`, and ends on the slider. If the
+    slider moves out by x, both tendons get longer by x: tension and joint stiffness increase.
     """
 
     lever: float  # [m]
@@ -97,12 +97,12 @@ class Tendons:
     damping: float  # of the joint [N.m.s/rad]
 
     def length(self, alpha: float) -> float:
-        """Distance from lever to eyelet at the angle alpha between them [m]."""
+        """Computes the distance of lever and eyelet at the angle alpha between both [m]."""
         a, r = self.lever, self.eyelet
         return math.sqrt(a * a + r * r - 2 * a * r * math.cos(alpha))
 
     def joint_stiffness(self) -> float:
-        """Slope of the torque at phi = 0, x = 0 [N.m/rad]."""
+        """Stiffness of the joint at phi = 0 and x = 0 [N.m/rad]."""
         a, r, alpha = self.lever, self.eyelet, self.spread
         d = self.length(alpha)
         slope = a * r * math.sin(alpha) / d
@@ -129,7 +129,7 @@ class Link:
 class Drive:
     """Command of a motor: u = feed_forward + kp (reference - theta) - kd theta', within +-peak.
 
-    theta is what the encoder reads, theta' its difference through a low pass of the first order.
+    theta is the encoder position, theta' the difference of theta after a first-order low pass.
     """
 
     feed_forward: Array  # [N.m] at every sample
@@ -141,7 +141,7 @@ class Drive:
 
 @dataclass(frozen=True)
 class Instruments:
-    """Current loop, encoders and log."""
+    """Properties of the current loop, of the encoders, and of the log."""
 
     commanded: bool  # the log has the command, otherwise a measurement of the torque
     delay: float  # from command to torque if it has the command, else from torque to log [s]
@@ -154,7 +154,7 @@ class Instruments:
 
 @dataclass(frozen=True, kw_only=True)
 class Joint:
-    """Motors, links, drives and instruments: one of each but for an arm, which has two.
+    """Motors, links, drives and instruments of a joint; an arm has two motors and links.
 
     An arm has two links in a vertical plane, a motor and a spring in each joint, and a floor.
     """
@@ -164,7 +164,7 @@ class Joint:
     drives: tuple[Drive, ...]
     instruments: tuple[Instruments, ...]
     sheet: Mapping[str, float]
-    """Errors of the owner's data: factors to true values, by start values of the estimator."""
+    """Ratios of the data sheet values to the true values, by start value of the estimator."""
     gravity: float  # 0 where the axis is vertical [m/s2]
     springs: tuple[Spring, ...] = ()  # one a motor, or none beside tendons
     tendons: Tendons | None = None

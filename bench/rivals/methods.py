@@ -1,4 +1,4 @@
-"""The methods that are compared, by name: those of this package, and least squares.
+"""Defines the compared methods by name: methods of this package, and least squares.
 
 All methods model the spring as an odd cubic polynomial in the deformation, because an owner does
 not know whether a spring hardens. If the stiffness is variable, the coefficients are quadratic in
@@ -29,12 +29,12 @@ N = 2  # number of the powers of the deformation
 
 
 def _m(log: JointLog) -> int:
-    """Number of the powers of the position of the stiffness motor."""
+    """Returns the number of the powers of the position of the stiffness motor."""
     return 3 if log.theta_c.any() else 1
 
 
 def _travel(log: JointLog) -> float:
-    """Range of the stiffness motor [rad]: its travel in this log, which an owner knows."""
+    """Returns the travel of the stiffness motor in this log [rad], which an owner knows."""
     return float(np.abs(log.theta_c).max()) or 1.0
 
 
@@ -51,7 +51,7 @@ def _spring(log: JointLog, phi: Array) -> tuple[Array, Array]:
 
 
 def _filtered_regression(log: JointLog) -> Estimate:
-    """On line: the estimate at each sample is from those up to it.
+    """Estimates on line: the estimate at each sample depends only on samples up to then.
 
     Parameters are as docs/filtered-regression.md advises: ranges, priors and noise are from the
     data sheet, and all others have start values.
@@ -61,7 +61,7 @@ def _filtered_regression(log: JointLog) -> Estimate:
 
 
 def _paper2011(log: JointLog) -> Estimate:
-    """On line, without a standard deviation, and never confident.
+    """Estimates on line by Paper2011, without standard deviation or confidence.
 
     F. Flacco, A. De Luca, I. Sardellitti, N. G. Tsagarakis, "Robust estimation of variable
     stiffness in flexible joints", Proc. IEEE/RSJ IROS 2011: residual (6), (8), kinematic Kalman
@@ -78,7 +78,7 @@ def _paper2011(log: JointLog) -> Estimate:
 
 
 def _on_line(log: JointLog, start: dict[str, Value]) -> Estimate:
-    """Results of the estimator of this package. `start` has the parameters of the method."""
+    """Runs the estimator of this package; `start` has the parameters of the method."""
     of_log = {"samplePeriod": log.sample_period, "rls.n": N, "rls.m": _m(log)}
     set_point = {"setPoint.offset": 0.0, "setPoint.scale": 1.0}
     estimator = sigmahat.Estimator(
@@ -144,7 +144,7 @@ def _regression(log: JointLog) -> tuple[Array, Array, Array]:
 
 
 def _dynamics(log: JointLog) -> float:
-    """The frequency of the dynamics [Hz]. Raises ValueError if the motor does not move."""
+    """Computes the frequency of the dynamics [Hz]. Raises ValueError if the motor does not move."""
     T, counts = log.sample_period, log.known["encoder.theta"]
     segment = min(len(log.theta), round(8 / T))
     f, density = signal.welch(log.theta, 1 / T, nperseg=segment, detrend="linear")
@@ -158,14 +158,14 @@ def _dynamics(log: JointLog) -> float:
 
 
 def _solve(X: Array, y: Array, known: Mapping[str, float]) -> tuple[Array, Array]:
-    """Coefficients and covariance. The variance of the rows is that of their residual."""
+    """Computes coefficients and covariance. The variance of the rows follows from the residual."""
     scale = np.sqrt(np.mean(X**2, axis=0))
     X = X / scale
     mean, information = np.zeros(len(scale)), np.zeros(len(scale))  # of the data sheet
     mean[:KNOWN] = np.array([known["motor.B"], known["motor.D_theta"]]) * scale[:KNOWN]
     information[:KNOWN] = (np.array([STD_B, STD_D]) * mean[:KNOWN]) ** -2
     beta = np.linalg.lstsq(X, y)[0]
-    for _ in range(2):  # the first time the residual is that without the rows of the data sheet
+    for _ in range(2):  # the first residual is computed without the rows of the data sheet
         residual = y - X @ beta
         variance = residual @ residual / (len(y) - len(beta))
         precision = X.T @ X / variance + np.diag(information)

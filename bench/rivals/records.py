@@ -16,7 +16,7 @@ STD_GAIN = 0.015  # of the measured torque, which no log shows
 
 @dataclass(frozen=True)
 class JointLog:
-    """One run of one joint. All arrays have one entry a sample."""
+    """The log of one simulation of one joint. All arrays have one entry per sample."""
 
     kind: str  # series_elastic, variable_stiffness or arm
     seed: int
@@ -33,7 +33,7 @@ class JointLog:
 
 @dataclass(frozen=True)
 class Estimate:
-    """The estimate of a method for a log. NaN where it has none."""
+    """The estimate of a method for a log; NaN at samples without an estimate."""
 
     stiffness: Array  # at every sample [N.m/rad]
     std: Array  # standard deviation [N.m/rad]; NaN: the method gives none

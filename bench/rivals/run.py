@@ -18,7 +18,7 @@ from sigmahat.files.tables import write_csv
 
 
 def run_joint(methods: Sequence[str], joint: tuple[str, int]) -> list[Result]:
-    """Results of the methods on the joint of this kind and seed."""
+    """Computes the results of all methods on the joint of the given kind and seed."""
     log = make(*joint)
     return [judge(name, METHODS[name], log) for name in methods]
 

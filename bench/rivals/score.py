@@ -14,15 +14,15 @@ QUANTILE = 1.96  # the interval is the estimate and this many standard deviation
 WRONG = 0.2  # relative error above which a confident estimate is wrong
 SCORES = ("error", "width", "coverage", "interval_score", "confident", "wrong")
 RESULT = ("kind", "seed", "method", "seconds", "remark", *SCORES)
-"""Names in the result of a method on a log."""
+"""Names of the values in the result of a method for a log."""
 HEAD = (
     *("joint", "method", "estimates", "error %", "interval width %", "coverage %"),
     *("interval score %", "lowest score %", "time s", "confident %", "confident and wrong %"),
 )
 
 Result = dict[str, Any]
-"""By RESULT: kind, seed and method; wall time [s], nan if the method failed, and why; SCORES if it
-did not."""
+"""Values by the names in RESULT: kind, seed, method, wall time [s], and the reason of a failure, or
+SCORES. The wall time of a failed method is nan."""
 
 
 def score(log: JointLog, estimate: Estimate) -> dict[str, float]:
@@ -75,7 +75,7 @@ def judge(method: str, estimate: Callable[[JointLog], Estimate], log: JointLog) 
 
 
 def page(results: Sequence[Result]) -> str:
-    """The table as Markdown: a row for each kind of joint and method."""
+    """Formats the results as Markdown, with a row for each kind of joint and method."""
     lines = [
         "Error (root mean square), interval width, interval score and time are medians over the "
         "logs, the others means. The interval is that of 95 %. *Lowest score*: the share of the "
@@ -91,7 +91,7 @@ def page(results: Sequence[Result]) -> str:
 
 
 def _cells(results: Sequence[Result], method: str) -> list[str]:
-    """The cells of a method, from the results of all methods on one kind of joint."""
+    """Computes the cells of a method, from the results of all methods on one kind of joint."""
     own = [r for r in results if r["method"] == method]
     scored = [r for r in own if "error" in r]
 
@@ -109,7 +109,7 @@ def _cells(results: Sequence[Result], method: str) -> list[str]:
 
 
 def best(results: Sequence[Result]) -> dict[tuple[str, int], str]:
-    """The method with the lowest interval score, by kind and seed."""
+    """Finds the method with the lowest interval score, by kind and seed."""
     scored = [r for r in results if not math.isnan(r.get("interval_score", math.nan))]
     scored.sort(key=lambda r: (r["interval_score"], r["method"]), reverse=True)
     return {(r["kind"], r["seed"]): r["method"] for r in scored}  # the last one stays

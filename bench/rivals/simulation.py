@@ -24,15 +24,15 @@ VELOCITY_LAG = 5e-3  # time constant of the low pass of the encoder's difference
 INNER_DELAY = 2e-4  # delay from command to torque if the log has measured torque [s]
 DIFFERENCE = 1e-6  # of phi, for the slope of the torque [rad]
 FLANGE = 0.002
-"""Share of a motor's inertia that is a body behind its gear, the rest is armature. An engine needs
-a body there; its acceleration is that of the flange in space, and it has no weight."""
+"""Fraction of the motor inertia in a body after the gear; the other part is armature. MuJoCo needs
+this body without weight, whose acceleration is equal to the acceleration of the flange."""
 SLIDER_MASS = 0.1  # [kg]
 SLIDER_ARMATURE = 5.0  # of its screw and motor [kg]
-SERVO = 40.0  # stiffness of the servo of the slider, by that of a tendon
-DAMPED = 1.4  # damping of that servo, by the geometric mean of its stiffness and armature
+SERVO = 40.0  # stiffness of the slider servo divided by the stiffness of a tendon
+DAMPED = 1.4  # servo damping divided by the geometric mean of servo stiffness and armature
 
 Run = dict[str, Array]
-"""Of the observed joint, without errors, one entry a sample; torques behind the gear, on the motor.
+"""True signals of the observed joint, one entry per sample; torques are at the gear output.
 
 theta, phi [rad], theta_dot [rad/s], theta_ddot [rad/s2], dry friction that the engine applied,
 damper and spring (tau_e) [N.m], stiffness [N.m/rad], theta_c [rad]; on the motor's axis: torque,
@@ -41,14 +41,14 @@ the same as late as it comes into the log, command [N.m].
 
 
 def make(kind: str, seed: int) -> JointLog:
-    """The log of a joint: one of KINDS."""
+    """Simulates a joint of one of KINDS, and returns its log."""
     joint = drawn(kind, seed)
     noise = np.random.default_rng([seed, KINDS.index(kind), 0, 1])
     return log(kind, seed, run(joint), joint, noise)
 
 
 def log(kind: str, seed: int, run: Run, joint: Joint, rng: np.random.Generator) -> JointLog:
-    """The log of a run of a joint; `rng` draws the noise."""
+    """Creates the log of a simulated joint; `rng` draws the noise."""
     motor, tools = joint.motors[joint.observed], joint.instruments[joint.observed]
     true = {
         "motor.gamma": motor.gear,
@@ -77,7 +77,7 @@ def log(kind: str, seed: int, run: Run, joint: Joint, rng: np.random.Generator) 
 
 
 def _rounded(angle: Array, counts: int) -> Array:
-    """Angle of an encoder with this number of counts a turn [rad]; it counts on past a turn."""
+    """Rounds an angle to the counts of an encoder [rad], which counts more than one turn."""
     count = 2 * math.pi / counts
     read: Array = np.round(angle / count) * count
     return read
@@ -136,7 +136,7 @@ class _Axis:
         self.command = self.torque = self.late = self.dry = 0.0
 
     def decide(self, k: int, theta: float) -> None:
-        """The command of sample k; theta is the true position [rad]."""
+        """Computes the command of sample k; theta is the true position [rad]."""
         drive = self._drive
         seen = round(theta / self._count) * self._count
         before = seen if self._seen is None else self._seen
@@ -158,7 +158,7 @@ class _Physics:
     """A joint in MuJoCo."""
 
     def __init__(self, joint: Joint) -> None:
-        import mujoco  # what is drawn needs no MuJoCo
+        import mujoco  # imported here, because drawing a joint needs no MuJoCo
 
         self._engine = mujoco
         self._model = mujoco.MjModel.from_xml_string(_mjcf(joint))
@@ -196,7 +196,7 @@ class _Physics:
         self._engine.mj_step(self._model, data)
 
     def instant(self) -> dict[str, float]:
-        """The observed joint at the beginning of the step that `advance` made."""
+        """Returns the state of the observed joint at the start of the last step of `advance`."""
         data, x, (i, j) = self._data, self._probe.qpos, self._at
         return {
             "theta": float(x[i]),
@@ -212,7 +212,7 @@ class _Physics:
         }
 
     def _slope(self, dof: int) -> float:
-        """Slope of the torque on the motor, by central differences of phi in the model itself."""
+        """Computes the slope of the motor torque by central differences of phi in the model."""
         probe, phi = self._probe, float(self._probe.qpos[dof])
         torque = []
         for side in (1, -1):
@@ -224,7 +224,7 @@ class _Physics:
 
 
 def _mjcf(joint: Joint) -> str:
-    """The model, with an actuator for each motor, and one for the slider of tendons."""
+    """Builds the MuJoCo model, with an actuator for each motor and for the slider of tendons."""
     values: dict[str, float] = {}
     if tendons := joint.tendons:
         behind = 0.05 + tendons.tension / tendons.stiffness  # from eyelet to slider [m]

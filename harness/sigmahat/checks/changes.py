@@ -1,4 +1,4 @@
-"""Other values of the scale of an angle: of its gear ratio, its unit or its counts per turn."""
+"""Proposes other values for the scale of an angle: gear ratio, unit, or counts per turn."""
 
 import math
 from collections.abc import Iterator
@@ -10,30 +10,30 @@ from sigmahat.logs.units import factor
 
 _ANGLES = ("rad", "deg", "turn")
 _COUNTS = tuple(2.0**k for i in (2, 1, 3, 4, 5, 6) for k in (i, -i))
-"""Likely factors of wrong counts: two or four counts per line, and wraps mistaken for turns."""
+"""Likely factors of wrong counts, such as two or four counts per line of the encoder."""
 _WHOLE = 0.02
-"""Most gear ratios are integers: up to this relative error, the nearest integer is proposed."""
+"""Largest relative error up to which the nearest integer is proposed as gear ratio."""
 
 
 @dataclass(frozen=True)
 class Change:
-    """Another value of a key, and the factor by which the values of the port change."""
+    """Another value of a configuration key, and the factor by which the port values change."""
 
     port: str  # theta or q
     key: str
     value: Proposal
     factor: float
     fits_any: bool = False
-    """Whether the value was computed from the slope in the log, so that any slope fits."""
+    """Whether the value was computed from the slope, and therefore fits any slope."""
 
     @property
     def on_theta(self) -> float:
-        """The factor of theta that has the same effect on the slope."""
+        """Factor of theta that has the same effect on the slope of q relative to theta."""
         return self.factor if self.port == "theta" else 1 / self.factor
 
 
 def changes(name: str, port: Port, gamma: float) -> Iterator[Change]:
-    """Changes of the scale of an angle, likely changes first.
+    """Yields possible changes of the scale of an angle, likely changes first.
 
     name   theta or q
     gamma  gear ratio of the motor
@@ -56,9 +56,9 @@ def changes(name: str, port: Port, gamma: float) -> Iterator[Change]:
 
 
 def gear_of(theta: Port, slope: float, half_width: float = 0.0) -> Change:
-    """The gear ratio with which the motor moves as far as the link.
+    """Proposes the gear ratio for which motor and link move equally far.
 
-    slope       of q on theta [1]
+    slope       regression slope of q on theta [1]
     half_width  half of the 95 % interval of the slope [1]
     """
     now = abs(theta.gear_ratio)
@@ -67,8 +67,8 @@ def gear_of(theta: Port, slope: float, half_width: float = 0.0) -> Change:
 
 
 def _simplest(gear: float, half_width: float) -> float:
-    """The integer with the most zeros in an interval, whose half width is relative [1]; else the
-    nearest integer, else four digits."""
+    """Rounds a gear ratio to the integer with the most zeros in its interval, whose half width is
+    relative [1]; else to the nearest integer, else to four digits."""
     for digits in range(len(f"{gear:.0f}")):
         likely = float(f"{gear:.{digits + 1}g}")
         if likely.is_integer() and abs(likely / gear - 1) < half_width:
@@ -78,5 +78,5 @@ def _simplest(gear: float, half_width: float) -> float:
 
 
 def distance(one: float, other: float) -> float:
-    """Distance of two positive factors on a logarithmic scale [1]."""
+    """Computes the distance of two positive factors on a logarithmic scale [1]."""
     return abs(math.log(one / other))

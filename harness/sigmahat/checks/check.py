@@ -27,7 +27,7 @@ _MISFIT = 3.0  # misfit of the model; effects of real joints cause up to about 2
 _NOISE = 3.0  # ratio of standard deviations, measured to configured
 _LEARNED = 0.5
 _DOUBTED = 0.5  # fraction of the second half
-_ROOM = 1.2  # ratio of a proposed range to the largest value
+_ROOM = 1.2  # ratio of a proposed range to the largest value in the log
 _WIDE = 5.0  # a range is too wide from this ratio to the largest value
 _ERROR = 100  # a contradiction counts more than all notes together
 _TORQUE = 3.0  # ratio of torques, measured to configured
@@ -38,8 +38,8 @@ Outputs = Mapping[str, np.ndarray[Any, Any]]
 def check(log: Log, configuration: Configuration) -> Checked:
     """Finds likely errors of the configuration by a comparison with the log.
 
-    The check uses at most 60000 ticks, those in which the joint moves most. The configuration need
-    not be in a file.
+    The check uses at most 60000 ticks, in the part of the log with the most motion. The
+    configuration need not be in a file.
 
     Raises LogError for a log and configuration that do not fit, FmuError if the FMU refuses.
     """
@@ -54,7 +54,7 @@ def check(log: Log, configuration: Configuration) -> Checked:
         # After a wrong value, the findings of the replay are only consequences of this value.
         replayed = _replayed(seen, outputs)
         if any(each.kind is Kind.NO_TORQUE for each in findings):
-            # Without a torque, a negative stiffness says nothing of a sign.
+            # Without a torque, a negative stiffness does not indicate a wrong sign.
             replayed = (each for each in replayed if each.about != "NegativeStiffness")
         findings += replayed
     is_regression = seen.every["method"] == "FilteredRegression"
@@ -83,12 +83,12 @@ def check_identified(log: Log, before: Configuration, after: Configuration) -> C
     return replace(checked, findings=[*of_inertia, *others])
 
 
-_UNLIKE = 5.0  # slope of q on theta: a soft spring does not make this slope so large
+_UNLIKE = 5.0  # slope of q on theta that is too large for a soft spring
 _ALIKE = 1.5
 
 
 def _swapped(seen: View) -> list[Finding]:
-    """A finding if the columns of theta and q seem swapped: after a swap, q moves like theta."""
+    """Returns a finding if q moves like theta only after a swap of the columns of theta and q."""
     ports = seen.configuration.ports
     if not {"theta", "q"} <= ports.keys():
         return []
@@ -97,7 +97,7 @@ def _swapped(seen: View) -> list[Finding]:
         return []
     theta, q = ports["theta"], ports["q"]
     if abs(theta.gear_ratio) < 1:
-        return []  # a ratio that is upside down moves theta and q as swapped columns do
+        return []  # an inverted gear ratio has the same effect as swapped columns
     turned = {
         "theta": replace(theta, column=q.column, time=q.time, zero=q.zero),
         "q": replace(q, column=theta.column, time=theta.time, zero=theta.zero),
@@ -114,9 +114,9 @@ def _swapped(seen: View) -> list[Finding]:
 
 
 def _tried(seen: View, finding: Finding) -> Finding:
-    """The finding with the one proposed value that leaves the fewest findings.
+    """Completes a finding with the proposed value that leaves the fewest findings.
 
-    It gets no value if no proposed value removes the finding.
+    The finding gets no value if no proposed value removes the finding.
     """
     if finding.severity is not Severity.WRONG or finding.proposed is None:
         return finding
@@ -141,7 +141,7 @@ def _tried(seen: View, finding: Finding) -> Finding:
 
 
 def changed(configuration: Configuration, key: str, value: Any) -> Configuration:
-    """A configuration with another value of a key, as "ports.tau.sign" or "motor.gamma"."""
+    """Changes the value of a configuration key, such as "ports.tau.sign" or "motor.gamma"."""
     section, _, name = key.partition(".")
     if section == "time":
         return replace(configuration, time=replace(configuration.time, **{name: value}))
@@ -153,7 +153,7 @@ def changed(configuration: Configuration, key: str, value: Any) -> Configuration
 
 
 def _contradictions(seen: View) -> Sequence[Finding]:
-    """What the log contradicts, without findings that only follow from another finding."""
+    """Finds contradictions of log and configuration, without consequences of other findings."""
     if still := list(at_rest(seen)):
         return still
     recorded = list(columns(seen))
@@ -163,7 +163,7 @@ def _contradictions(seen: View) -> Sequence[Finding]:
 
 
 def _of_motion(seen: View, recorded: Sequence[Finding]) -> Iterator[Finding]:
-    """What the motion contradicts, and the findings of the columns that do not follow from it."""
+    """Yields contradictions by the motion, and findings of the columns with other causes."""
     here = relation(seen)
     yield from here.findings
     keys = {each.key for each in here.findings}
@@ -195,7 +195,7 @@ def _gears(seen: View) -> Iterator[Finding]:
 
 
 def _rests_on(seen: View, start: Mapping[str, Value], per_gain: float) -> Iterator[Finding]:
-    """Assumptions about ports and motor that no log can verify.
+    """Yields the assumptions about ports and motor that no log can verify.
 
     start     start values of the FMU
     per_gain  relative change of the stiffness per relative change of the gain of the torque
@@ -226,7 +226,7 @@ def _rests_on(seen: View, start: Mapping[str, Value], per_gain: float) -> Iterat
 
 
 def _replayed(seen: View, outputs: Outputs) -> Iterator[Finding]:
-    """What the estimator itself reports when the log is replayed."""
+    """Yields findings from the outputs of the estimator when the log is replayed."""
     yield from _range(seen, outputs)
     yield from _noise(seen)
     valid = outputs["valid"]
@@ -241,7 +241,7 @@ def _range(seen: View, outputs: Outputs) -> Iterator[Finding]:
     every, known = seen.every, seen.configuration.parameters
     is_regression = every["method"] == "FilteredRegression"
     phi, given = float(np.max(np.abs(outputs["phi"]))), float(every["range.phi"])
-    # A value that identify will set is no finding before identify has run.
+    # Before `identify` has run, range.phi may be missing, which is no finding.
     if is_regression and "range.phi" in known and not given / _WIDE < phi < given:
         severity = Severity.WRONG if phi > _ROOM * given else Severity.NOTE
         proposed = float(f"{_ROOM * phi:.3g}")
@@ -254,7 +254,7 @@ def _range(seen: View, outputs: Outputs) -> Iterator[Finding]:
 
 
 def _noise(seen: View) -> Iterator[Finding]:
-    """Noise of the torque: the lower limit of the prediction error."""
+    """Compares the noise of the torque with the configured noise."""
     key = "noise.tau_e" if seen.has_sensor else "noise.tau"
     if not seen.pieces or (seen.every["modality"] == "Model"):
         return
@@ -267,7 +267,7 @@ def _noise(seen: View) -> Iterator[Finding]:
 
 
 def _claims(outputs: Outputs) -> Iterator[Finding]:
-    """Misfit of the model, and doubts that the estimator reports often."""
+    """Yields a large misfit of the model, and doubts that the estimator reports often."""
     misfit = float(outputs["misfit"][-1])
     if misfit > _MISFIT:
         yield Finding(Kind.MISFIT, Severity.NOTE, "rls.n", misfit, "", 1.0)

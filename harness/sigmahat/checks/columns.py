@@ -1,4 +1,4 @@
-"""Checks of the recorded columns: steps of an encoder, jumps, a torque that saturates."""
+"""Checks the recorded columns: steps of an encoder, jumps, saturation of the torque."""
 
 import math
 from collections.abc import Iterator
@@ -13,17 +13,17 @@ from sigmahat.logs.configuration import Port
 from sigmahat.logs.log import Array
 from sigmahat.logs.units import factor, unwrap
 
-_LOOKED_AT = 20_000  # about how many values are searched for the step of an encoder
-_STEPS = 20  # fewer steps between distinct values show no encoder
-_FINER = 1.5  # a configured step that differs by more than this factor is wrong
+_LOOKED_AT = 20_000  # approximate number of values that are searched for the step of an encoder
+_STEPS = 20  # least number of steps between distinct values of an encoder
+_FINER = 1.5  # largest ratio of a correct configured step to the step in the log
 _FLAT = 3  # consecutive samples at an end of the range
 _OFTEN = 0.01  # fraction of all samples
-_SAME = 0.001  # relative difference of the logarithm of a ratio from the one of two units
+_SAME = 0.001  # relative tolerance of the logarithm of the ratio of rad to deg
 _LEAST = 20  # samples
 _SPIKE, _UNUSUAL, _ALONE = 0.1, 20.0, 5.0
-"""Limits of a spike. Its distance from both neighbours counts over the range, over the usual
-distance and the encoder step, and over the distance between the neighbours."""
-_SMOOTH = 0.01  # least distance over the range, in place of the step where there is none
+"""Least distance of a spike from both neighbours, relative to the range, to the usual distance and
+the encoder step, and to the distance between the neighbours."""
+_SMOOTH = 0.01  # least distance of a spike relative to the range, without an encoder step
 _FEW = 50  # with fewer distinct values, the torque is a series of steps
 
 
@@ -33,7 +33,7 @@ def columns(seen: View) -> Iterator[Finding]:
             continue
         values = seen.log.read(port.column)
         finite = np.isfinite(values)
-        values = values if finite.all() else values[finite]  # no copy: a log can be long
+        values = values if finite.all() else values[finite]  # avoids a copy of a long log
         if name in ("theta", "q"):
             of_encoder = encoder_step(values)
             yield from list(_spikes(name, port, values, of_encoder)) or _jumps(name, port, values)
@@ -46,7 +46,7 @@ def columns(seen: View) -> Iterator[Finding]:
 
 
 def at_rest(seen: View) -> Iterator[Finding]:
-    """Positions that do not change: such a log has no information on the joint."""
+    """Finds positions that do not change: such a log has no information on the joint."""
     ports = [name for name in ("theta", "q") if name in seen.samples.names]
     still = []
     for name in ports:
@@ -63,7 +63,7 @@ def at_rest(seen: View) -> Iterator[Finding]:
 
 
 def _jumps(name: str, port: Port, values: Array) -> Iterator[Finding]:
-    """A counter that jumps back by its whole range, although the port has no wrap."""
+    """Finds a counter that jumps back by its whole range, although the port has no wrap."""
     if port.wrap is not None or len(values) < 2:
         return
     steps, span = np.diff(values), float(np.ptp(values))
@@ -77,7 +77,7 @@ def _jumps(name: str, port: Port, values: Array) -> Iterator[Finding]:
 
 
 def _spikes(name: str, port: Port, values: Array, of_encoder: float) -> Iterator[Finding]:
-    """Single samples far from both neighbours, which agree: a bus or an encoder lost them."""
+    """Finds single samples far from both neighbours, as if a bus or an encoder lost a value."""
     if len(values) < _LEAST:
         return
     if port.wrap is not None:
@@ -95,12 +95,12 @@ def _spikes(name: str, port: Port, values: Array, of_encoder: float) -> Iterator
 
 
 def encoder_step(values: Array) -> float:
-    """The smallest step between distinct values, in their unit; inf if they show no encoder."""
+    """Returns the smallest step between distinct values; inf if the values show no encoder."""
     return smallest_step(values[:: max(1, len(values) // _LOOKED_AT)], _STEPS)
 
 
 def step(seen: View, name: str, port: Port, of_encoder: float) -> Iterator[Finding]:
-    """Compares the step of the values with the step of the configured encoder."""
+    """Compares the smallest step of the values with the step of the configured encoder."""
     given = float(seen.every[f"encoder.{name}"])
     if not given or math.isinf(of_encoder):
         return
@@ -121,7 +121,7 @@ def step(seen: View, name: str, port: Port, of_encoder: float) -> Iterator[Findi
 
 
 def _saturation(values: Array) -> Iterator[Finding]:
-    """Flat tops: the drive limited the torque, or the sensor was at the end of its range."""
+    """Finds saturation: the drive limited the torque, or the sensor was at the end of its range."""
     if len(np.unique(values[:_LOOKED_AT])) < _FEW:
         return
     tolerance = 1e-6 * float(np.ptp(values))

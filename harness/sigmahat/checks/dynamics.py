@@ -1,4 +1,4 @@
-"""What the motor equation shows: signs, zero of the deformation, delays, inertia."""
+"""Checks by the motor equation: signs, zero of the deformation, delays, and inertia."""
 
 import math
 from collections.abc import Iterator
@@ -16,12 +16,12 @@ from sigmahat.identification.quantities import WIDE
 from sigmahat.identification.regression import MOTOR
 from sigmahat.logs.units import scale
 
-_MATTERS = 0.05  # share of the covered deformation; prior.bias covers smaller errors of zero
+_MATTERS = 0.05  # smallest relevant error of zero, relative to the range of the deformation
 _STD = 3.0  # a prior contradicts the log beyond this number of standard deviations
 
 
 def dynamics(here: Relation) -> Iterator[Finding]:
-    """All checks by the motor equation, as far as the motion allows these checks."""
+    """Runs all checks by the motor equation that the motion in the log allows."""
     seen, found = here.seen, here.fitted
     if found is None or not 0 < found.linear.half_width.get(LINEAR, math.inf) < math.inf:
         return  # the log determines no stiffness
@@ -33,7 +33,6 @@ def dynamics(here: Relation) -> Iterator[Finding]:
     if zero is not None:
         yield zero
     elif found.form.symmetric and explains(found.fit, other := with_all_powers(seen, found.form)):
-        # The spring is softer to one side.
         times, key = math.sqrt(found.fit.error / other.error), "rls.symmetric"
         yield Finding(Kind.ASYMMETRY, Severity.NOTE, key, times, "", 1.0, proposed=False)
     if not seen.has_sensor:
@@ -42,8 +41,8 @@ def dynamics(here: Relation) -> Iterator[Finding]:
 
 
 def _delays(seen: View, found: Fitted) -> Iterator[Finding]:
-    """A delay of the torque, or between the encoders. A late link position also looks like an early
-    torque, and a late torque like an early position."""
+    """Finds a delay of the torque, or a delay between the encoders. A late link position has the
+    same effect as an early torque, and a late torque as an early link position."""
     late, lag = _late(seen, found), _encoder_lag(seen, found)
     if late is not None and (lag is None or (late[0].measured > 0 and late[1] < lag[1])):
         yield late[0]
@@ -51,11 +50,11 @@ def _delays(seen: View, found: Fitted) -> Iterator[Finding]:
         yield lag[0]
 
 
-_Delay = tuple[Finding, float]  # finding, and sum of squared errors without delay
+_Delay = tuple[Finding, float]  # finding, and sum of squared errors after the correction
 
 
 def _sign(seen: View, found: Fitted) -> Finding | None:
-    """A torque of wrong sign, or a wrong deformation if only the stiffness is negative."""
+    """Finds a torque of wrong sign, or a wrong deformation if only the stiffness is negative."""
     score = found.scores()
     stiffness = -np.sign(seen.gamma) * score[LINEAR]
     if not stiffness < -1:
@@ -72,19 +71,19 @@ def _sign(seen: View, found: Fitted) -> Finding | None:
 
 
 _LEAST_GEAR = 2e-3
-"""Least relative error of a gear ratio that counts: encoders and gears have smaller errors."""
+"""Smallest relative error of a gear ratio that is reported; real gears have smaller errors."""
 _MUCH = 0.3
-"""Largest ratio of the squared errors, after to before, if a gear ratio explains the log."""
+"""Largest ratio of the squared errors, corrected to configured, if a gear ratio is wrong."""
 
 
 def _gear(seen: View, found: Fitted) -> Finding | None:
-    """A slightly wrong gear ratio, if its correction explains much of the torque."""
+    """Finds a slightly wrong gear ratio, if the correction explains much of the torque."""
     if "theta" not in seen.configuration.ports:
         return None
     error = motor.gear_error(seen, found.form)
     if error is None or not abs(error.value - 1) > error.half_width + _LEAST_GEAR:
         return None
-    # An asymmetric spring, a wrong zero, or a spring that changes, must not explain it as well.
+    # An asymmetric spring, a wrong zero, or a changing spring must not explain the errors too.
     others = [each.error for each in (found.fit, with_all_powers(seen, found.form))]
     others.append(motor.error_of_parts(seen, found.form))
     if not all(error.fit.error < _MUCH * each for each in others if math.isfinite(each)):
@@ -95,9 +94,9 @@ def _gear(seen: View, found: Fitted) -> Finding | None:
 
 
 def _zero(seen: View, found: Fitted) -> Finding | None:
-    """A wrong zero of the deformation.
+    """Finds a wrong zero of the deformation.
 
-    A polynomial with even powers has its zero anywhere, but in the range of the deformations.
+    A polynomial with even powers may have its zero anywhere in the range of the deformation.
     """
     zero, covered = found.spring.zero(), found.spring.covered
     if not math.isfinite(zero):
@@ -110,7 +109,7 @@ def _zero(seen: View, found: Fitted) -> Finding | None:
         for name, angle in (("q", zero), ("theta", -zero))
         if (port := seen.configuration.ports.get(name)) is not None
     ]
-    bias = 0.0  # that the estimator expects
+    bias = 0.0  # largest bias of the torque that the estimator expects [N.m]
     if seen.every["method"] == "FilteredRegression":
         bias = _STD * float(seen.every["prior.bias"]) * float(seen.every["prior.tau_e"])
     torque = abs(seen.gamma * found.linear.value[LINEAR] * zero / found.spring.units[0])
@@ -124,14 +123,14 @@ def _zero(seen: View, found: Fitted) -> Finding | None:
 
 
 def _late(seen: View, found: Fitted) -> _Delay | None:
-    """Delay of the torque with respect to the motion."""
+    """Finds a delay of the torque relative to the motion."""
     late = motor.delay(seen, found.form)
     if late is None:
         return None
     least = abs(late.value) - late.half_width
     if least < seen.T or not explains(found.fit, late.fit):
         return None
-    # Friction of another form, or a spring of another form, must not explain the torque as well.
+    # Another form of friction or another form of spring must not explain the torque too.
     _, *frictions = motor.variants(found.form)
     others = [motor.with_form(seen, form) for form in frictions]
     others.append(with_all_powers(seen, found.form))
@@ -140,7 +139,7 @@ def _late(seen: View, found: Fitted) -> _Delay | None:
     is_expected = least < _STD * float(seen.every["prior.delay"])
     severity = Severity.NOTE if is_expected else Severity.WRONG
     port = seen.configuration.ports["tau"]
-    # The estimator handles expected delays: damping of the spring looks like an early torque.
+    # A delay within prior.delay is no error: damping of the spring looks like an early torque.
     proposed = None if is_expected else float(f"{port.delay + late.value:.3g}")
     key = "ports.tau.delay"
     finding = Finding(Kind.TORQUE_LAG, severity, key, late.value, "s", 0.0, proposed)
@@ -148,10 +147,10 @@ def _late(seen: View, found: Fitted) -> _Delay | None:
 
 
 def _encoder_lag(seen: View, found: Fitted) -> _Delay | None:
-    """A friction below 0, as it results if the encoders are read at different times.
+    """Finds a time lag between the encoders, which appears as negative viscous friction.
 
-    Friction of another form than in the model can also give a value below 0. So without the lag,
-    the equation must fit better: much better, unless the negative friction explains much.
+    Unmodelled friction can also appear as negative viscous friction. Therefore the equation must
+    fit better without the lag: much better, unless the negative friction explains much.
     """
     value, half = found.linear.value, found.linear.half_width
     if not value["D_theta"] + half["D_theta"] < 0:
@@ -185,13 +184,13 @@ def _encoder_lag(seen: View, found: Fitted) -> _Delay | None:
 
 _AWAS = 2.3e-5  # start value of motor.B [kg.m2]
 _LARGE = math.log(5.0)
-"""Logarithm of a factor: friction and delays that the equation does not model change B by less."""
-_DIFFERENT = math.log(2.0)  # a torque constant is wrong by a smaller factor
-_LIKE = math.log(3.0)  # up to this factor, a ratio of inertias counts as the gear ratio
+"""Logarithm of the largest factor by which unmodelled friction and delays can change B."""
+_DIFFERENT = math.log(2.0)  # logarithm of the largest factor that a torque constant explains
+_LIKE = math.log(3.0)  # tolerance of the logarithm of a ratio of inertias to the gear ratio
 
 
 def inertia(seen: View, found: Fitted) -> Iterator[Finding]:
-    """Finds a wrong inertia or a wrong scale of the torque, where the log shows it clearly."""
+    """Finds a wrong inertia or a wrong scale of the torque, if the evidence is clear."""
     given = float(seen.every["motor.B"])
     B = _nearest(seen, found, given) if given > 0 else None
     if B is None or distance(B, given) < _DIFFERENT:
@@ -217,8 +216,8 @@ def inertia(seen: View, found: Fitted) -> Iterator[Finding]:
 
 
 def _nearest(seen: View, found: Fitted, given: float) -> float | None:
-    """The inertia that differs least from `given`, among fits with other forms of friction and the
-    ends of the interval. None if the difference is not clear, or an inertia is not above 0."""
+    """Returns the inertia nearest to `given` among the ends of the interval and fits with other
+    forms of friction. None if the difference is not clear, or an inertia is not above 0."""
     B, half = found.fit.value["B"], found.fit.half_width["B"]
     if not 0 < B - half < math.inf or distance(B, given) < _DIFFERENT:
         return None

@@ -1,4 +1,4 @@
-"""What a check of a log and its configuration found, as data. Sentences are made in text.py."""
+"""Data types for the findings of a check; text.py converts findings to sentences."""
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
@@ -9,7 +9,7 @@ Proposal = float | bool | str  # a value of a key, as it stands in the configura
 
 
 class Severity(Enum):
-    """How much a finding matters."""
+    """Severity of a finding."""
 
     WRONG = "wrong"  #: The configuration contradicts the log.
     RESTS_ON = "rests on"
@@ -18,7 +18,7 @@ class Severity(Enum):
 
 
 class Kind(Enum):
-    """What was checked."""
+    """The property of log or configuration that was checked."""
 
     AT_REST = "positions that do not change"
     SLOPE = "slope of q on theta"
@@ -50,7 +50,7 @@ class Kind(Enum):
 
 @dataclass(frozen=True)
 class Finding:
-    """One thing that was found."""
+    """One finding of a check, such as an error of the configuration."""
 
     kind: Kind  #: What was checked.
     severity: Severity  #: How much the finding matters.

@@ -1,8 +1,8 @@
-"""The motor equation of a log, fitted quickly: signs, zero, delay and errors for the checks.
+"""Fits the motor equation to a log with little computation, for the checks of a configuration.
 
-The equation is taken from `identify`, with one form of friction and one filter. So intervals
-are narrower than in `identify`. The slope of the torque is the column of a delay delta:
-tau(t - delta) = tau(t) - delta tau'(t).
+The equation is taken from `identify`, but with one form of friction and one filter. Therefore the
+intervals are narrower than in `identify`. A delay delta of the torque has the time derivative of
+the torque as regressor: tau(t - delta) = tau(t) - delta tau'(t).
 """
 
 import math
@@ -18,16 +18,16 @@ from sigmahat.identification.regression import MOTOR, Equations, Fit, Form, Stri
 from sigmahat.identification.spring import Spring
 from sigmahat.logs.log import Array
 
-LINEAR = "eta[0,0]"  # the column of the linear spring in a symmetric polynomial
-_SLOWEST = 0.1  # [s] between ticks: a slower log does not show the motion of a joint
+LINEAR = "eta[0,0]"  # name of the regressor of the linear spring in a symmetric polynomial
+_SLOWEST = 0.1  # largest sample period that still shows the motion of a joint [s]
 _ORDERS = 3
 _PARTS = 8  # number of parts of a log; each may have another spring
-_SPARE = 6  # blocks of a part beyond its columns
+_SPARE = 6  # least number of blocks of a part in addition to the number of its columns
 _STEPS = 4  # number of steps of Newton's method for the delay
 LONGEST = 0.1  # largest delay [s]
 _BETTER = 0.7
-"""Largest ratio of the squared errors, after to before, if a change explains the log. Significance
-alone is not enough: with unmodelled friction, nearly every change is significant."""
+"""Largest ratio of the squared errors, after to before, if a change explains the log. A significant
+difference is not sufficient: with unmodelled friction, nearly every change is significant."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Fitted:
     spring: Spring  # the polynomial
 
     def scores(self) -> dict[str, float]:
-        """Coefficients with a linear spring, over half their intervals; only what is determined."""
+        """Returns determined coefficients of the linear spring fit, divided by half intervals."""
         value, half = self.linear.value, self.linear.half_width
         return {name: value[name] / half[name] for name in value if 0 < half[name] < math.inf}
 
@@ -46,10 +46,10 @@ class Fitted:
 def fitted(seen: View, f_0: float | None = None) -> Fitted | None:
     """Fits the motor equation, or with a torque sensor the spring alone.
 
-    f_0  low pass of the equations [Hz]; None: as identify chooses it
+    f_0  low pass of the equations [Hz]; None: the same choice as in identify
 
-    None without data, if the sample period is too long for the motion of a joint, or if the torque
-    is only noise, as without current.
+    Returns None without data, if the sample period is too long for the motion of a joint, or if the
+    torque is only noise, as without current.
     """
     if seen.T > _SLOWEST or all(is_only_noise(piece.tau) for piece in seen.pieces):
         return None
@@ -69,7 +69,7 @@ def fitted(seen: View, f_0: float | None = None) -> Fitted | None:
 
 @dataclass(frozen=True)
 class Corrected:
-    """A value that Newton's method has found."""
+    """A value found by Newton's method, with its interval and the fit."""
 
     value: float
     half_width: float  # half of the 95 % interval
@@ -77,10 +77,10 @@ class Corrected:
 
 
 def delay(seen: View, form: Form) -> Corrected | None:
-    """Delay of the torque [s]; None if no value is found.
+    """Computes the delay of the torque [s]; None if no value is found.
 
-    Newton's method: each step shifts the torque by the delay found, so the coefficient of the slope
-    tends to 0. So neither noise of the slope nor curvature of the torque biases the result.
+    Each step of Newton's method shifts the torque until the coefficient of its derivative is 0.
+    Therefore neither noise of the derivative nor curvature of the torque biases the result.
     """
     late = 0.0
     for _ in range(_STEPS):
@@ -98,11 +98,11 @@ def delay(seen: View, form: Form) -> Corrected | None:
 
 
 def gear_error(seen: View, form: Form) -> Corrected | None:
-    """Configured gear ratio of theta divided by the right one; None if the log does not show it.
+    """Computes the configured gear ratio of theta divided by the true one; None if unknown.
 
-    With theta (1 + delta) for theta, phi becomes phi - delta theta. So the torque has a term in
-    theta, which is a column here. Newton's method corrects theta until this term vanishes. The
-    spring has all powers: a spring of another form would look like a small part of theta.
+    With theta (1 + delta) for theta, phi becomes phi - delta theta. The torque gets a term in
+    theta, which is a regressor here. Newton's method corrects theta until this term vanishes. The
+    spring has all powers, because a missing power would look like a term in theta.
     """
     whole = 1.0
     form = replace(form, n=_ORDERS).with_all_powers()
@@ -118,7 +118,7 @@ def gear_error(seen: View, form: Form) -> Corrected | None:
         ]
         system = _equations(replace(seen, pieces=scaled), form)
         found = fit(system)
-        spring = found.value.get("eta[1,0]", 0.0) / system.units[0]  # of the power 1
+        spring = found.value.get("eta[1,0]", 0.0) / system.units[0]  # coefficient of phi
         if not (spring and math.isfinite(found.half_width[extra(0)])):
             return None
         step, half_width = -found.value[extra(0)] / spring, abs(found.half_width[extra(0)] / spring)
@@ -129,7 +129,7 @@ def gear_error(seen: View, form: Form) -> Corrected | None:
 
 
 def variants(form: Form) -> list[Form]:
-    """Forms that differ in uncertain choices: the low pass, and the form of friction."""
+    """Returns forms of the equation that differ in the low pass, or in the model of friction."""
     return [
         replace(form, f_0=0.6 * form.f_0),
         replace(form, load_friction=True),
@@ -142,12 +142,12 @@ def with_form(seen: View, form: Form) -> Fit:
 
 
 def with_known(seen: View, form: Form, name: str, value: float) -> Fit:
-    """The fit if a coefficient of the motor is known."""
+    """Fits the motor equation with a known value of one coefficient of the motor."""
     return fit(_equations(seen, form).known(name, value))
 
 
 def explains(before: Fit, after: Fit) -> bool:
-    """Whether a change explains much of the errors before the change."""
+    """Returns whether the errors after a change are significantly and much smaller."""
     return after.error < _BETTER * before.error and regression.is_worse(before, after)
 
 
@@ -156,9 +156,9 @@ def with_all_powers(seen: View, form: Form) -> Fit:
 
 
 def error_of_parts(seen: View, form: Form) -> float:
-    """Sum of the squared errors if each part of the log may have another spring and friction.
+    """Computes the sum of squared errors if spring and friction differ between parts of the log.
 
-    Without the part with the largest errors, in which the spring may change.
+    The part with the largest errors is left out, because the spring may change in this part.
     """
     system = _equations(seen, form)
     number = min(_PARTS, len(system.rows) // (len(system.names) + _SPARE))
@@ -167,7 +167,7 @@ def error_of_parts(seen: View, form: Form) -> float:
 
 
 def _chosen(seen: View, form: Form) -> tuple[Form, Equations]:
-    """The form and its equations with the orders that predict best, up to those of `form`."""
+    """Chooses the polynomial orders that predict best, up to the orders of `form`."""
     form, _ = regression.choose(_equations(seen, form), form)
     return form, _equations(seen, form)
 
@@ -178,6 +178,6 @@ def _equations(seen: View, form: Form) -> Equations:
 
 
 def moved(signal: Array, ticks: float) -> Array:
-    """A signal, shifted to earlier times by a number of ticks."""
+    """Shifts a signal to earlier times by a number of ticks."""
     at = np.arange(len(signal), dtype=np.float64)
     return np.interp(at + ticks, at, signal)

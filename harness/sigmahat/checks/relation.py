@@ -1,13 +1,13 @@
-"""How q follows theta: the slope is 1, unless a sign, a unit, a gear or an encoder is wrong.
+"""Checks the slope of q on theta: a slope other than 1 shows a wrong sign, unit, gear or encoder.
 
-In slow motion the link follows its motor. Near the resonance the link does not, nor if the link or
-the motor is held. So a slope alone is no proof. With the scale from the slope, the motor equation
-must fit the torque at least as well as before.
+In slow motion the link follows its motor. Near the resonance the link does not follow, nor if link
+or motor is held. Therefore the slope of q on theta is not sufficient as evidence. With a scale from
+the slope, the motor equation must fit the torque at least as well as before.
 
-The torque is no proof either if it looks like the torque of a spring. This happens if it is a
-function of the position, as under gravity, or if a hand moves the link and the motor holds its
-position. So a slope of slow motion with a high correlation needs no proof by the torque in two
-cases: it is negative, or fits a likely mistake, such as a gear ratio with one zero too many.
+The torque is no evidence either if the torque is a function of the position, like a spring torque.
+Examples are gravity, and a link moved by hand while the motor holds its position. Therefore a slope
+of slow motion with a high correlation needs no evidence from the torque in two cases. The slope is
+negative, or the slope fits a likely mistake, such as a gear ratio with one zero too many.
 """
 
 import math
@@ -27,33 +27,33 @@ from sigmahat.identification.regression import MOTOR, Signals, is_worse
 
 PORTS = ("theta", "q")
 _LIKE = math.log(1.5)
-"""Tolerance of the logarithm of a factor: a spring deforms, so q and theta do not move alike."""
+"""Tolerance of the logarithm of a slope, because q and theta differ by the deformation."""
 _ANY = 0.05
-"""Sort key of a gear ratio that was computed from the slope: other changes that agree are first."""
+"""Sort key of a gear ratio computed from the slope: other changes that agree are tried first."""
 _LIKELY = 0.06  # tolerance of the logarithm of a likely mistake
-_APART = 3.0  # the smallest likely mistake is a factor of 4, by counts per line
-_FAR = 5.0  # below resonance, a spring may enlarge the motion of the link by this factor
-_FARTHEST = 100.0  # beyond this factor, resonance is no cause either
+_APART = 3.0  # slopes beyond this factor are checked; the smallest likely mistake is a factor of 4
+_FAR = 5.0  # largest factor by which a spring enlarges the link motion below the resonance
+_FARTHEST = 100.0  # largest factor by which a resonance enlarges the link motion
 _BETTER = 0.8  # largest ratio of the squared errors, after to before
 _PRECISE = 0.01  # largest half width of the correction of a gear ratio [1]
-_AS_WELL = 0.25  # tolerance of the logarithm: another factor explains the same slope
+_AS_WELL = 0.25  # tolerance of the logarithm of another factor that explains the same slope
 _SLOW = 1.0  # [Hz]
-_ENOUGH = 0.1  # least fraction of slow motion, else the whole motion is used
+_ENOUGH = 0.1  # least fraction of slow motion; with less, the whole motion is used
 _CORRELATED = 0.9
-_RIGID = 0.99  # correlation of motor and link, beyond which the deformation is small beside both
+_RIGID = 0.99  # with a higher correlation of motor and link, the deformation is negligible
 
 
 @dataclass(frozen=True)
 class Slope:
-    """Slope of q on theta, of the slow motion if the log has any."""
+    """Slope of q on theta, from the slow motion if the log contains slow motion."""
 
     value: float  # [1]
     is_slow: bool
-    is_rigid: bool  # whether the deformation is small beside the motion
+    is_rigid: bool  # whether the deformation is small compared with the motion
 
 
 def slope_of(pieces: Sequence[Signals], T: float) -> Slope | None:
-    """Slope of q on theta by total least squares; None if q and theta do not move together."""
+    """Computes the slope of q on theta by total least squares; None for a low correlation."""
     if not pieces:
         return None
     motions = [np.column_stack([p.theta, p.theta + p.phi]) for p in pieces]
@@ -67,7 +67,7 @@ def slope_of(pieces: Sequence[Signals], T: float) -> Slope | None:
     variances = np.var(both, axis=0)
     if not np.all(variances > 0):
         return None
-    # If both are scaled to variance 1, the axis is the diagonal, whatever the units are.
+    # With both signals scaled to variance 1, the principal axis is the diagonal.
     correlation = np.corrcoef(both.T)[0, 1]
     if abs(correlation) < _CORRELATED:
         return None
@@ -77,7 +77,7 @@ def slope_of(pieces: Sequence[Signals], T: float) -> Slope | None:
 
 @dataclass(frozen=True)
 class Relation:
-    """The motion of q and theta after the errors found are corrected."""
+    """The motion of q and theta after a correction of the errors that were found."""
 
     findings: Sequence[Finding]
     seen: View  # the log, with the scales that were proposed
@@ -91,7 +91,7 @@ def relation(seen: View) -> Relation:
         return here
     ports = seen.configuration.ports
     if "tau_e_sensor" in ports and ports["theta"].column == ports["tau_e_sensor"].column:
-        return here  # theta is the compliance of a test bench: it drives no link
+        return here  # theta is the compliance of a test bench, which drives no link
     found = slope_of(seen.pieces, seen.T)
     return here if found is None else _sign(_scale(here, found))
 
@@ -126,16 +126,16 @@ def _scale(here: Relation, slope: Slope) -> Relation:
 
 
 def _is_positive(seen: View, found: Fitted | None) -> bool:
-    """Whether a log surely has a stiffness above 0, and motor data that are not below it."""
+    """Returns whether the stiffness is significantly positive, and motor data are not negative."""
     if found is None or not abs(found.linear.value[LINEAR]) > found.linear.half_width[LINEAR]:
         return False
     return not _is_stiffness_negative(seen, found) and _sign_of_motor(found) >= 0
 
 
 def _likely(seen: View, slope: Slope) -> Change | None:
-    """The likely mistake that makes a slope of slow motion; None if the slope is of another size.
+    """Finds the likely mistake that explains the slope; None if the slope fits no likely mistake.
 
-    A gear ratio that disagrees with motor.gamma is a second sign, so its slope may be less exact.
+    A gear ratio that contradicts motor.gamma is additional evidence, so the tolerance is larger.
     """
     size, ports = abs(slope.value), seen.configuration.ports
     if not (slope.is_rigid and max(size, 1 / size) > (_APART if slope.is_slow else _FARTHEST)):
@@ -151,12 +151,12 @@ def _likely(seen: View, slope: Slope) -> Change | None:
 
 
 def _is_gamma(change: Change, seen: View) -> bool:
-    """Whether the change makes the gear ratio of theta that of motor.gamma."""
+    """Returns whether the change makes the gear ratio of theta equal to motor.gamma."""
     return change.port == "theta" and change.value == abs(seen.gamma)
 
 
 def _encoder_denies(seen: View, change: Change) -> bool:
-    """Whether the steps of an encoder fit its given resolution now, and would not afterwards."""
+    """Returns whether the encoder steps fit the given resolution only without the change."""
     port = seen.configuration.ports[change.port]
     if f"encoder.{change.port}" not in seen.configuration.parameters:
         return False
@@ -169,10 +169,10 @@ def _encoder_denies(seen: View, change: Change) -> bool:
 
 
 def _by_torque(here: Relation, slope: Slope, every: list[Change]) -> Change | None:
-    """The change with which the motor equation fits the torque best; None if none is plausible."""
+    """Finds the change with which the motor equation fits best; None if no change is plausible."""
 
     def unlikely(each: Change) -> float:
-        """The change with the smallest value is tried first."""
+        """Returns a sort key: the change with the smallest key is tried first."""
         return _ANY if each.fits_any else round(distance(each.on_theta, abs(slope.value)), 1)
 
     best, found = None, here.fitted
@@ -185,9 +185,9 @@ def _by_torque(here: Relation, slope: Slope, every: list[Change]) -> Change | No
 
 
 def _refined(seen: View, slope: float) -> Change:
-    """The gear ratio that the motor equation shows near a slope of the motions.
+    """Refines the gear ratio from the slope with the motor equation.
 
-    Motor and link of a flexible joint move alike only roughly, the torque depends on 1 % of theta.
+    The slope is inexact because the joint is flexible; the torque depends on 1 % of theta.
     """
     near, theta = _scaled(seen, "theta", slope), seen.configuration.ports["theta"]
     found = fitted(near)
@@ -204,7 +204,7 @@ def _sign(here: Relation) -> Relation:
         return here
     flipped = _scaled(seen, "q", -1.0)
     after = fitted(flipped, before.form.f_0 if before else None)
-    # In slow motion, no effect makes the link move as far as its motor, but in the other direction.
+    # In slow motion, only a wrong sign makes the link move as far as its motor, but reversed.
     is_certain = slope.is_slow and slope.is_rigid and distance(-slope.value, 1.0) < _LIKE
     if before is not None and after is not None and not is_certain:
         is_soft = _is_stiffness_negative(seen, before)
@@ -216,7 +216,7 @@ def _sign(here: Relation) -> Relation:
     if gear < 0:
         keys = {"ports.theta.gear_ratio": -gear, "ports.q.sign": keys["ports.q.sign"]}
     elif not _sign_of_motor(after) < 0:
-        # A change of the sign of theta instead would change the signs of inertia and friction.
+        # The sign of theta is right, because its change would make inertia and friction negative.
         name = "q"
         keys = dict(reversed(keys.items()))
     (key, proposed), *others = keys.items()
@@ -226,7 +226,7 @@ def _sign(here: Relation) -> Relation:
 
 
 def _sign_of_motor(found: Fitted | None) -> float:
-    """Common sign of inertia and friction; 0 if the fit does not determine this sign."""
+    """Returns the common sign of inertia and friction; 0 if the fit does not determine it."""
     if found is None:
         return 0.0
     scores = found.scores()
@@ -234,7 +234,7 @@ def _sign_of_motor(found: Fitted | None) -> float:
 
 
 def _scaled(seen: View, name: str, factor: float) -> View:
-    """The log with another scale of theta or q."""
+    """Changes the scale of theta or q in the signals of a log."""
     of_theta, of_q = (factor, 1.0) if name == "theta" else (1.0, factor)
     pieces = []
     for piece in seen.pieces:
@@ -249,7 +249,7 @@ def _is_plausible(here: Relation, after: Fitted | None, slope: Slope) -> bool:
     if before is None or after is None:
         return is_far
     if slope.is_slow and slope.is_rigid and size < 1 and _is_stiffness_negative(here.seen, before):
-        return True  # the motor moves farther than a free link, and the spring would push it on
+        return True  # a free link moves less than the motor, and the stiffness would be negative
     return not is_worse(after.fit, before.fit) if is_far else _is_better(before, after)
 
 

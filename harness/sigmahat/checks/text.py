@@ -1,4 +1,4 @@
-"""Findings as sentences for people."""
+"""Converts the findings of a check to sentences for the user."""
 
 import math
 from collections.abc import Mapping
@@ -23,11 +23,11 @@ DOUBTS = {
     "NegativeStiffness": ("ports.q.sign", "the stiffness found is negative"),
     "Change": ("rls.n", "the stiffness seems to change"),
 }
-"""Items of the FMU's output doubt: the key to look at, and what it says."""
+"""Items of the FMU output `doubt`, with the key to check first and a description."""
 
 
 def summary(checked: Checked) -> str:
-    """All findings, on one screen."""
+    """Formats all findings as text that fits on one screen."""
     lines = [] if checked.is_wrong else [nothing_found(checked)]
     for severity, title in TITLES.items():
         if found := checked.of(severity):
@@ -36,18 +36,18 @@ def summary(checked: Checked) -> str:
 
 
 def nothing_found(checked: Checked) -> str:
-    """The line for a log that contradicts nothing."""
+    """Returns the line of text for a log that does not contradict the configuration."""
     seconds = f"{checked.ticks * checked.T:.6g} s"
     return f"checked: nothing in {seconds} of the log contradicts the configuration"
 
 
 def rows(checked: Checked) -> list[tuple[str, str]]:
-    """Severity and sentence of each finding."""
+    """Returns severity and sentence of each finding."""
     return [(each.severity.value, sentence(each)) for each in checked.findings]
 
 
 def sentence(finding: Finding) -> str:
-    """The finding, the key to look at, and what it should be, in one line."""
+    """Describes a finding in one line: the key, the error, and the proposed value."""
     return f"{finding.key}: {_what(finding)}{_proposal(finding)}"
 
 
@@ -70,7 +70,7 @@ def _number(value: float | None, unit: str) -> str:
 
 
 def _what(f: Finding) -> str:
-    """The sentence for the kind of the finding, with its values."""
+    """Formats the sentence for the kind of the finding, with measured and expected values."""
     template = _SPECIAL.get((f.kind, f.about)) or _SENTENCES[f.kind]
     if f.kind is Kind.TORQUE_LAG and f.measured < 0:
         template = "the torque is {ms} earlier than the motion explains, or the spring is damped"

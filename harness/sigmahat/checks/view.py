@@ -1,4 +1,4 @@
-"""The part of a log that the checks use: a bounded number of ticks, in units of the estimator."""
+"""Selects the part of a log that the checks use, with a limited number of ticks."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -13,13 +13,13 @@ from sigmahat.logs.replay import parameters
 from sigmahat.logs.sampling import Samples, sample
 
 _MOST = 60_000
-"""Largest number of ticks: from a longer log, the checks use the part with the most motion."""
+"""Largest number of ticks; from a longer log, the checks use the part with the most motion."""
 
 
 @dataclass(frozen=True)
 class View:
-    log: Log  # the log, for checks of effects that conversion and sampling would hide
-    configuration: Configuration  # the configuration, as it is given
+    log: Log  # unprocessed log, for effects that conversion and sampling would hide
+    configuration: Configuration  # configuration without any correction
     every: Mapping[str, Value]  # all parameters of the estimator
     samples: Samples  # at most 60000 ticks
     pieces: Sequence[Signals]
@@ -40,7 +40,7 @@ class View:
 
 
 def view(log: Log, configuration: Configuration) -> View:
-    """Looks at a log. Raises LogError if log and configuration do not fit."""
+    """Samples a log for the checks. Raises LogError if log and configuration do not fit."""
     every = all_parameters(configuration)
     configuration.need_ports(str(every["modality"]))
     samples = _liveliest(sample(log, configuration, float(every["samplePeriod"])))
@@ -49,13 +49,13 @@ def view(log: Log, configuration: Configuration) -> View:
 
 
 def all_parameters(configuration: Configuration) -> dict[str, Value]:
-    """All parameters of the estimator, also without a value in the configuration."""
+    """Returns all parameters of the estimator, also parameters without a configured value."""
     fmu = installed("StiffnessEstimator")
     return fmu.parameters(parameters(fmu, configuration))
 
 
 def _liveliest(samples: Samples) -> Samples:
-    """The ticks with the largest motion of theta, or of q if theta is missing."""
+    """Selects the ticks with the largest motion of theta, or of q if theta is missing."""
     ticks = len(samples.values)
     if ticks <= _MOST:
         return samples

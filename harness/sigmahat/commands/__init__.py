@@ -1,1 +1,1 @@
-"""The commands of `sigmahat`, one file each. They import what they need when they run."""
+"""The commands of `sigmahat`, one file each. Other modules are imported when a command runs."""

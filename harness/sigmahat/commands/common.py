@@ -1,4 +1,4 @@
-"""What several commands share: options, the folder they write to, progress, errors in one line.
+"""Defines common parts of the commands: options, output folder, progress, and one-line errors.
 
 A command with `@answer_options` ends with `answer(text, values)`, which handles these options.
 """
@@ -42,7 +42,7 @@ def _for_scripts(context: click.Context, parameter: click.Parameter, given: bool
 
 
 def command(example: str, **more: Any) -> Callable[[Callable[..., object]], click.Command]:
-    """As click.command, with an example at the end of the help."""
+    """Creates a command like click.command, with an example at the end of the help."""
     return click.command(epilog=f"\b\nExample: sigmahat {example}", **more)
 
 

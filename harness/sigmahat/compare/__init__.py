@@ -1,1 +1,1 @@
-"""Both methods of the estimator, side by side, on joints with wrong motor data."""
+"""Compares both methods of the estimator on joints with wrong motor data."""

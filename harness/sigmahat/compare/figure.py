@@ -59,7 +59,7 @@ def _plot(axes: Axes, curve: Sequence[Row], method: str, marker: str) -> list[Li
 
 
 def _title(row: Row) -> str:
-    """What the rows of a panel have in common."""
+    """Formats the title of a panel from the properties that all rows of the panel share."""
     if not row.joint.coulomb:
         return f"all {row.joint.scenario.duration:g} s"
     friction = rf"Coulomb friction {row.joint.coulomb:g} N$\cdot$m"

@@ -14,7 +14,7 @@ from sigmahat.runs.scenario import Scenario, signal_of, source_and_variable
 
 CALIBRATED = 2.0  # time from which on sigma_std is compared with the error [s]
 MOTOR = ("D_theta", "B", "tau_coulomb")
-"""At the end [N.m.s/rad, kg.m2, N.m]; nan for several motors."""
+"""Motor data estimated at the end [N.m.s/rad, kg.m2, N.m]; nan for several motors."""
 _UNKNOWN = np.array([np.nan])
 
 Performance = Mapping[str, float]
@@ -49,7 +49,7 @@ def performances(scenario: Scenario, recording: Recording) -> dict[str, Performa
 
 @dataclass(frozen=True)
 class Row:
-    """One stiffness of a joint in one case, judged by one index."""
+    """A stiffness of a joint in one case, evaluated by one index."""
 
     joint: Joint
     case: Case

@@ -22,7 +22,7 @@ _IN_FILE = {
 
 
 def group(row: Row) -> str:
-    """Heading of the group of rows that this row belongs to."""
+    """Returns the heading of the group to which a row of the table belongs."""
     if not row.case.motor_errors:
         return "motor data exact, and taken as exact"
     if row.joint.lever_arm is None:
@@ -36,12 +36,12 @@ def lever_arm(joint: Joint) -> str:
 
 
 def motion(joint: Joint) -> str:
-    """The scenario of the paper, or the frequency."""
+    """Describes a row by the scenario of the paper, or by the frequency of the motion."""
     return joint.scenario.name if joint.frequency is None else f"{joint.frequency:g} Hz"
 
 
 def case(given: Case) -> str:
-    """The errors of the data given to the estimators."""
+    """Describes the errors of the motor data that the estimators get."""
     errors = [f"{name} {100 * error:+.0f} %" for name, error in given.motor_errors.items()]
     if given.nominal_error is not None:
         errors.append(f"nominal curve {100 * given.nominal_error:+.0f} %")
@@ -55,7 +55,7 @@ def case_and_part(row: Row) -> str:
 
 
 def table(rows: Sequence[Row]) -> str:
-    """Both methods side by side, as text, a part for each group of joints; "-": not defined.
+    """Formats both methods side by side as text, by group of joints; "-": not defined.
 
     For FilteredRegression alone: sigma_std, the percentage of instants with an error of at most
     1.96 sigma_std, and the motor data at the end.
@@ -78,7 +78,7 @@ def table(rows: Sequence[Row]) -> str:
 
 
 def with_headings(lines: Sequence[str], headings: Sequence[str]) -> str:
-    """The first line, then the other lines, each group of them below its heading."""
+    """Yields the header, and then the lines of each group below the heading of the group."""
     text, above = [lines[0]], ""
     for line, heading in zip(lines[1:], headings, strict=True):
         if heading != above:

@@ -1,1 +1,1 @@
-"""Products of the build: FMUs, their documentation, the amalgamation."""
+"""Creates the products of the build: FMUs, their documentation, and the amalgamation."""

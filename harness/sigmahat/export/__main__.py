@@ -1,4 +1,4 @@
-"""Build steps of the FMUs, called by CMake: many processes, so each imports only what it needs."""
+"""Runs build steps of the FMUs for CMake; each step is a process with few imports."""
 
 from importlib import import_module
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The C library as one pair of files, to copy into another project."""
+"""Writes the C library as one pair of files, to copy into another project."""
 
 import re
 from collections.abc import Iterable
@@ -32,7 +32,7 @@ def write(out: Path, sources: Iterable[Path], interface: Path, licence: Path, ve
 
 
 def _inlined(file: Path, folders: list[Path], done: set[Path]) -> str:
-    """A file with the headers of the library that it includes, each where it is needed first."""
+    """Replaces the first include of each library header in a file by the contents of the header."""
     if file in done:
         return ""
     done.add(file)

@@ -1,4 +1,4 @@
-"""FMU archives whose bytes depend on the contents alone."""
+"""Writes FMU archives whose bytes depend only on the contents."""
 
 import zipfile
 from collections.abc import Iterable, Mapping
@@ -11,7 +11,7 @@ _TIME = (1980, 1, 1, 0, 0, 0)
 
 
 def write(fmu: Path, contents: Mapping[str, Path | bytes]) -> None:
-    """Write an FMU from the files to put in it, or their bytes, by their names in the archive.
+    """Write an FMU from files or bytes, given by their names in the archive.
 
     Entries are sorted, with fixed times and permissions, so that equal contents give equal
     bytes. Raises ``FileNotFoundError`` for a missing file, before anything is written.
@@ -31,7 +31,7 @@ def write(fmu: Path, contents: Mapping[str, Path | bytes]) -> None:
 
 
 def files_in(folder: Path) -> dict[str, Path | bytes]:
-    """The files in a folder, at any depth, by their names in it."""
+    """Finds all files in a folder, at any depth, by their relative names."""
     files = (file for file in folder.rglob("*") if file.is_file())
     return {file.relative_to(folder).as_posix(): file for file in files}
 

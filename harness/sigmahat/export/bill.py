@@ -1,7 +1,7 @@
-"""The bill of materials of a release, in CycloneDX: contents of the files, and build tools.
+"""Writes the bill of materials of a release in CycloneDX: contents of the files, and build tools.
 
-The bill depends on the files of the release alone, so the same release gives the same bytes. The
-bill has no time, and its serial number is computed from the files.
+The bill depends only on the files of the release, so that the same release gives the same bytes.
+The bill has no time, and the serial number is computed from the files.
 """
 
 import hashlib
@@ -83,7 +83,7 @@ def _tool(name: str) -> Component:
 
 
 def _packages(files: Iterable[Path]) -> Iterable[Component]:
-    """Packages that pip installs with a wheel; extras are optional. pip decides on the versions."""
+    """Lists packages that pip installs with a wheel, without extras; pip chooses the versions."""
     wheel = next((file for file in files if file.suffix == ".whl"), None)
     if wheel is None:
         raise FileNotFoundError("no wheel in the release; build it before the bill of materials")
@@ -103,7 +103,7 @@ def _packages(files: Iterable[Path]) -> Iterable[Component]:
 def _contents(
     file: Path, own: Component, headers: Component, equations: Component, packages: list[Component]
 ) -> list[Component]:
-    """What a file contains, and the packages that a wheel requires."""
+    """Lists the components in a file of the release, and the packages that a wheel requires."""
     if file.suffix == ".zip":
         return [own]
     if file.suffix == ".fmu":

@@ -1,4 +1,4 @@
-"""The table of the variables of an FMU in C (``fmu_src/model.h``), from its model description."""
+"""Writes the C table of the FMU variables (``fmu_src/model.h``) from the model description."""
 
 import re
 from collections.abc import Callable
@@ -20,7 +20,7 @@ def _field(variable: Element, name: str) -> str:
 
 
 def storage_in_struct(root: Element) -> dict[str, str]:
-    """Place of every variable in a struct whose fields carry the variables' names.
+    """Returns the C expression of every variable in a struct with fields named like the variables.
 
     ``motor.B`` is ``parameters.motor.B``, ``eta[1,2]`` is ``output.eta[1][2]``.
     """
@@ -28,10 +28,10 @@ def storage_in_struct(root: Element) -> dict[str, str]:
 
 
 def storage_in_sides(root: Element) -> dict[str, str]:
-    """Place of every variable in a struct with a struct per side, ``side[0]`` and ``side[1]``.
+    """Returns the C expression of every variable in a struct with ``side[0]`` and ``side[1]``.
 
-    ``motor_2.B`` is ``side[1].parameters.motor.B``. Inputs and parameters common to both are
-    in ``side[0]``, outputs common to both are fields of their own.
+    ``motor_2.B`` is ``side[1].parameters.motor.B``. Common inputs and parameters of both sides are
+    in ``side[0]``; common outputs of both sides are separate fields.
     """
     places = {}
     for variable in variables(root):
@@ -48,7 +48,7 @@ def storage_in_sides(root: Element) -> dict[str, str]:
 
 
 def storage_in_arrays(root: Element) -> dict[str, str]:
-    """Place of every variable of a plant: arrays p, u and y in the order of the template.
+    """Returns the C expression of every variable of a plant, in the arrays p, u and y.
 
     Parameters for which `is_of_every_plant` is true have their own fields.
     """
@@ -68,13 +68,13 @@ def storage_in_arrays(root: Element) -> dict[str, str]:
 
 
 def is_of_every_plant(parameter: str) -> bool:
-    """Whether ``fmu_src/plant.c`` has this parameter, and not the equations of a plant."""
+    """Returns whether a parameter belongs to ``fmu_src/plant.c``, not to the plant equations."""
     return parameter in _OWN_FIELDS or _SIGNAL.fullmatch(parameter) is not None
 
 
 STORAGE: dict[str, Callable[[Element], dict[str, str]]]
 STORAGE = {"struct": storage_in_struct, "sides": storage_in_sides, "arrays": storage_in_arrays}
-"""How the C struct of an FMU holds its variables."""
+"""Functions that return the C expressions of the FMU variables, by layout of the struct."""
 
 
 _BOOLEAN = {"true": "1", "false": "0"}
@@ -98,7 +98,7 @@ def _limits(root: Element, kind: Element) -> tuple[str, str]:
 
 
 def c_table(root: Element, struct: str, places: dict[str, str], guid: str) -> str:
-    """C header with identifier, GUID and the table of variables (``fmu_src/model.h``).
+    """Formats a C header with identifier, GUID and table of variables (``fmu_src/model.h``).
 
     ``struct`` is the type that holds the variables at ``places``, which the including file
     must have defined.

@@ -1,4 +1,4 @@
-"""Binaries of an FMU for every platform, compiled on any of these platforms."""
+"""Compiles the binaries of an FMU for all platforms, on any of these platforms."""
 
 import os
 import shutil
@@ -29,7 +29,7 @@ PLATFORMS_3 = {
 }
 """Platforms of FMI 3.0, which also has names for processors of the ARM family."""
 
-# Without contraction to fused operations, every machine computes the same numbers. Symbols and
+# Without fused operations (contraction), all machines compute the same numbers. Symbols and
 # debug information would contain paths (-s removes both).
 CODE = ("-std=c99", "-O2", "-ffp-contract=off", "-fvisibility=hidden", "-s")
 FLAGS = (*CODE, "-fPIC", "-shared")
@@ -83,7 +83,7 @@ def compile_shared(
 def release(fmu: Path, out: Path, cache: Path) -> None:
     """Write a copy of an FMU with binaries for every platform instead of its own binaries.
 
-    All are compiled from the sources in the FMU; ``cache`` and errors as ``compile_files``.
+    The sources in the FMU are compiled; ``cache`` and errors as ``compile_files``.
     """
     with TemporaryDirectory() as unpacked:
         folder = Path(fmpy.extract(str(fmu), unzipdir=unpacked))

@@ -1,7 +1,7 @@
-"""Model description of an FMU from its template and from what follows from the variables.
+"""Completes the model description of an FMU from a template and the variables in the template.
 
 This module adds value references, display units, the model structure, source files, and the GUID.
-It removes units that no variable has.
+Units that no variable has are removed.
 """
 
 import copy
@@ -17,7 +17,7 @@ from sigmahat.export.templates import render, variables
 
 
 def _add_model_structure(root: Element) -> None:
-    """Outputs, and the variables on which their initial values depend.
+    """Adds the model structure: outputs, and variables on which their initial values depend.
 
     At a communication point no output depends on an input: both estimators and plants compute
     outputs in fmi2DoStep alone.
@@ -111,12 +111,12 @@ def _write_xml(root: Element, file: Path) -> None:
 
 
 def for_version(files: Iterable[Path], fmi: int) -> list[Path]:
-    """The files of an FMU of FMI 2.0 or 3.0, without files in the folder of the other version."""
+    """Selects the files for FMI 2.0 or 3.0, without files in the folder of the other version."""
     return [file for file in files if file.parent.name != {2: "fmi3", 3: "fmi2"}[fmi]]
 
 
 def with_headers(files: Iterable[Path]) -> list[Path]:
-    """The files given, and the headers they include from each other's folders, in any depth.
+    """Returns files and all headers that the files include, directly or indirectly.
 
     Other headers come with the importer (FMI) or the compiler. Raises ``ValueError`` for two files
     of one name: the FMU has all files in one folder.
@@ -139,7 +139,7 @@ _TYPES = {"Real": "Float64", "Integer": "Int32", "Boolean": "Boolean", "Enumerat
 
 
 def for_fmi3(root: Element) -> Element:
-    """Model description of FMI 3.0 from the complete description of FMI 2.0, which is unchanged."""
+    """Creates the model description of FMI 3.0 from the complete description of FMI 2.0."""
     made = Element("fmiModelDescription", {**root.attrib, "fmiVersion": "3.0"})
     made.set("instantiationToken", made.attrib.pop("guid"))
     (identifier,) = (e.attrib["modelIdentifier"] for e in root.findall("CoSimulation"))
@@ -176,7 +176,7 @@ def _model_variables(root: Element) -> Element:
 
 
 def _model_structure(root: Element) -> Element:
-    """Outputs and initial unknowns, by value references instead of indices from 1."""
+    """Creates the model structure of FMI 3.0, with value references instead of indices."""
     made = Element("ModelStructure")
     for part, tag in (("Outputs", "Output"), ("InitialUnknowns", "InitialUnknown")):
         for unknown in root.findall(f"ModelStructure/{part}/Unknown"):

@@ -1,4 +1,4 @@
-"""Files for pip: a wheel for each platform, and the source distribution."""
+"""Writes the files for pip: a wheel for each platform, and the source distribution."""
 
 import os
 import shutil

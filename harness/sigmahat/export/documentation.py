@@ -1,4 +1,4 @@
-"""Documentation and icon of an FMU: ``documentation/index.html``, an SVG and a PNG.
+"""Writes documentation and icon of an FMU: ``documentation/index.html``, an SVG and a PNG.
 
 One Jinja2 template in ``modelDescription/documentation`` gives the page of every FMU, with the
 variables of the template of the model description. The icons are drawings in
@@ -50,7 +50,7 @@ def write(template: Path, out: Path, version: str) -> None:
 
 
 def table(root: Element, causality: str) -> dict[str, Any]:
-    """Rows of the variables of one causality; elements of an array by the name of the array."""
+    """Creates table rows of the variables of one causality, and of array elements by array."""
     single: list[dict[str, Any]] = []
     arrays: dict[str, list[dict[str, Any]]] = {}
     for variable in templates.variables(root):

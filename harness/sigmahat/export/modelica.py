@@ -1,4 +1,4 @@
-"""The Modelica package as an archive, in the form in which Modelica tools load it.
+"""Writes the Modelica package as an archive that Modelica tools can load.
 
 A file ``*.jinja`` of the package is a template. The template takes names, units, start values,
 ranges and descriptions of the variables from the model descriptions of the FMUs.
@@ -54,14 +54,14 @@ class Variable:
         return forms.get(self.kind, "{}").format(self.full_name)
 
     def declared(self, *modifiers: str, name: str = "", value: str = "") -> str:
-        """Type, name, modifiers (also for the range) and description."""
+        """Formats a Modelica declaration: type, name, modifiers, range and description."""
         every = ", ".join([*modifiers, *self.limits])
         text = f"{self.type} {name or self.name}{self.size}{f'({every})' if every else ''}"
         return f'{text}{f" = {value}" if value else ""} "{self.description}"'
 
 
 def contents(library: Path, descriptions: Path, version: str) -> dict[str, bytes]:
-    """The files of the package by their names in it, templates rendered.
+    """Returns the files of the Modelica package by relative name, with rendered templates.
 
     library       folder of the package, with its ``package.mo.jinja``
     descriptions  folder of the templates of the model descriptions
@@ -105,7 +105,7 @@ def contents(library: Path, descriptions: Path, version: str) -> dict[str, bytes
 
 
 def _variable(root: Element, variable: Element, types: dict[str, str]) -> Variable | None:
-    """The variable; None for a signal source, and for all but the first element of an array."""
+    """Converts an FMU variable; None for a signal source, and for further array elements."""
     kind, given = variable[0], variable.attrib
     name, _, index = given["name"].partition("[")
     if name.startswith("signal.") or (index and "array" not in given):

@@ -1,4 +1,4 @@
-"""C code of a plant from its equations: ``plant_functions.c`` and ``plant_functions.h``."""
+"""Generates the C code of a plant: ``plant_functions.c`` and ``plant_functions.h``."""
 
 import re
 from collections.abc import Iterable, Sequence
@@ -27,7 +27,7 @@ class Elimination:
         rest = set(range(size))
 
         def fill_in(pivot: int) -> int:
-            """Bound on the entries that become nonzero."""
+            """Returns an upper limit of the number of entries that become nonzero."""
             in_row = len(self._rows[pivot].keys() & rest)
             return (in_row - 1) * (sum(pivot in self._rows[i] for i in rest) - 1)
 
@@ -49,11 +49,11 @@ class Elimination:
 
     @property
     def factors(self) -> ca.SX:
-        """All entries of the factors [size: k]."""
+        """Returns all entries of the factors [size: k]."""
         return ca.vertcat(*(row[j] for row in self._rows for j in sorted(row)))
 
     def solve(self, factors: ca.SX, b: ca.SX) -> ca.SX:
-        """Solution for the right-hand side b [size: n], with the entries given as `factors`."""
+        """Solves the system for the right-hand side b [size: n], given the entries `factors`."""
         entry = iter(ca.vertsplit(factors))
         rows = [{j: next(entry) for j in sorted(row)} for row in self._rows]
         x = ca.vertsplit(b)
@@ -81,7 +81,7 @@ _QUIET = """\
 def functions(
     plant: PlantEquations, parameters: Sequence[str], inputs: Sequence[str], outputs: Sequence[str]
 ) -> list[ca.Function]:
-    """The functions that ``fmu_src/plant.c`` and ``fmu_src/radau.c`` call.
+    """Returns the functions that ``fmu_src/plant.c`` and ``fmu_src/radau.c`` call.
 
     Vectors p, u and y are in the order given, which must name each variable of the plant once.
     Raises ValueError if names are missing or unknown, or the equations of the plant not complete.

@@ -1,7 +1,7 @@
 """An FMU of a plant of your own, from its equations in CasADi: no template, no CMake.
 
 All parts that do not depend on the equations are taken from ``AwasPlant.fmu`` and its sources.
-So only sigmahat with its extra ``plants`` and a C compiler are needed.
+Only sigmahat with its extra ``plants`` and a C compiler are needed.
 """
 
 import os

@@ -1,4 +1,4 @@
-"""Output of a command: folders and files that are complete or do not exist, and their SHA-256."""
+"""Writes folders and files that are complete or do not exist, and computes their SHA-256."""
 
 import hashlib
 import json
@@ -64,7 +64,7 @@ def write_json(values: object, path: Path) -> None:
 
 
 def finite(values: Any) -> Any:
-    """Values for JSON: None for a number that is not finite, at any depth."""
+    """Replaces numbers that are not finite by None for JSON, at any depth."""
     if isinstance(values, Mapping):
         return {str(key): finite(value) for key, value in values.items()}
     if isinstance(values, (list, tuple)):
@@ -73,7 +73,7 @@ def finite(values: Any) -> Any:
 
 
 def sha256(path: Path) -> str:
-    """Hash of the bytes of a file, or of the list of files in a folder such as a ROS 2 bag.
+    """Computes the hash of a file, or of the list of files in a folder such as a ROS 2 bag.
 
     The list has a line "HASH  NAME" for each file, sorted by name, which `sha256sum` would write.
 

@@ -1,4 +1,4 @@
-"""Tables: titles of columns, CSV written and read back, and lines of text."""
+"""Formats titles of columns and lines of text, and writes and reads tables as CSV."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ if TYPE_CHECKING:
 
 
 def title(name: str, unit: str | None) -> str:
-    """Name and unit as one text; a quantity without a unit is its name alone."""
+    """Formats name and unit as a title; the title of a quantity without a unit is the name."""
     return f"{name} [{unit}]" if unit else name
 
 
 def name_and_unit(title: str) -> tuple[str, str | None]:
-    """Name and unit from which title() made the title."""
+    """Splits a title of a column into name and unit."""
     name, bracket, unit = title.rpartition(" [")
     return (name, unit.removesuffix("]")) if bracket else (title, None)
 
@@ -34,7 +34,7 @@ def write_csv(path: Path, head: Iterable[str], rows: Iterable[Iterable[Any]]) ->
 
 
 def numeric_columns(table: pa.Table) -> dict[str, NDArray[np.float64]]:
-    """The columns with numbers or true and false, as floats, by name without the unit."""
+    """Returns columns with numbers or flags as floats, by name without the unit."""
     from pyarrow import types
 
     kinds = (types.is_floating, types.is_integer, types.is_boolean)
@@ -47,7 +47,7 @@ def numeric_columns(table: pa.Table) -> dict[str, NDArray[np.float64]]:
 
 
 def read_csv(path: Path) -> pa.Table:
-    """The table of a CSV file. Raises ValueError if the file is not CSV, OSError without a file."""
+    """Reads a CSV table. Raises ValueError if the file is not CSV, OSError without a file."""
     from pyarrow import ArrowInvalid, ArrowKeyError, csv
 
     try:
@@ -57,7 +57,7 @@ def read_csv(path: Path) -> pa.Table:
 
 
 def aligned(rows: Sequence[Sequence[str]], left: Container[int] = (0,)) -> list[str]:
-    """Rows as lines, every column as wide as its longest cell.
+    """Formats rows as lines of text; each column is as wide as its longest cell.
 
     rows  cells, all rows of the same length; the head is a row, too
     left  columns with cells aligned to the left; cells of other columns are aligned to the right

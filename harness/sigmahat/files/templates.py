@@ -1,4 +1,4 @@
-"""Jinja2 for the templates of the package and of the model descriptions."""
+"""Configures Jinja2 for the templates of the package and of the model descriptions."""
 
 from pathlib import Path
 
@@ -6,6 +6,6 @@ import jinja2
 
 
 def environment(*folders: Path, autoescape: bool = True) -> jinja2.Environment:
-    """Jinja2 for the templates in these folders; a name without a value is an error."""
+    """Creates a Jinja2 environment for template folders; an undefined name is an error."""
     loader, strict = jinja2.FileSystemLoader(folders), jinja2.StrictUndefined
     return jinja2.Environment(loader=loader, undefined=strict, autoescape=autoescape)

@@ -1,4 +1,4 @@
-"""TOML files, such as the configuration of a log."""
+"""Reads and changes TOML files, such as the configuration of a log."""
 
 import errno
 import sys
@@ -21,7 +21,7 @@ _DEEPEST = 6
 
 
 def read(path: Path) -> tomlkit.TOMLDocument:
-    """The document, with its comments; its method unwrap() gives plain dictionaries.
+    """Reads a TOML document with comments; the method unwrap() returns plain dictionaries.
 
     Raises OSError if the file cannot be read. Raises ValueError if the file is not TOML (with the
     place), or far larger than a file written by hand.
@@ -44,7 +44,7 @@ def read(path: Path) -> tomlkit.TOMLDocument:
 
 
 def _keys(value: Any, depth: int) -> int:
-    """Number of keys and tables in a value, at any depth. Raises ValueError if nested too deep."""
+    """Counts keys and tables in a value, at any depth. Raises ValueError if nested too deep."""
     if not isinstance(value, (dict, list)):
         return 0
     if depth > _DEEPEST:
@@ -55,7 +55,7 @@ def _keys(value: Any, depth: int) -> int:
 
 
 def dotted(table: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, Any]]:
-    """Values of nested tables by their dotted names: motor.B = 1 is a table in a table to TOML."""
+    """Yields values of nested tables by dotted name: motor.B = 1 is a nested table in TOML."""
     for name, value in table.items():
         if isinstance(value, Mapping):
             yield from dotted(value, f"{above}{name}.")
@@ -64,7 +64,7 @@ def dotted(table: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, Any
 
 
 def set_dotted(table: MutableMapping[str, Any], name: str, item: Item) -> None:
-    """Sets motor.B in the form of the table: motor.B, "motor.B", or B in a table motor."""
+    """Sets a dotted key in the form that the table uses: motor.B, "motor.B", or table motor."""
     group, _, last = name.partition(".")
     if name in table or not last:
         table[name] = item

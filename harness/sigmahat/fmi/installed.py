@@ -34,11 +34,11 @@ def version() -> str:
     return metadata.version("sigmahat")
 
 
-_DISTRIBUTIONS = {"foxglove": "foxglove-sdk"}  # whose name differs from that of their package
+_DISTRIBUTIONS = {"foxglove": "foxglove-sdk"}  # distributions with another name
 
 
 def how_to_install(package: str | None) -> str | None:
-    """One line for a missing package that sigmahat or one of its extras requires.
+    """Returns one line on a missing package that sigmahat or one of its extras requires.
 
     None for any other package. pip finds sigmahat installed, and adds only the missing packages.
     """

@@ -287,7 +287,7 @@ class Slave:
     def restore(self, saved: bytes) -> float:
         """Takes a state that was saved, and returns its time [s].
 
-        Raises FmuError, whose message says what is wrong, for bytes that are no state of this FMU.
+        Raises FmuError with a reason for bytes that are not a saved state of this FMU.
         """
         with self._state(self.fmi.deSerializeFMUstate, saved) as state:
             self.fmi.setFMUstate(state)
@@ -334,7 +334,7 @@ def _on_message(
         slave.errors.append(text)
 
 
-# One logger for all slaves, for the whole process: FMPy's proxy stores only the last logger, and
+# One logger serves all slaves of the process: FMPy's proxy stores only the last logger, and
 # calls this logger for every FMU.
 _LOGGER = fmi2.fmi2CallbackLoggerTYPE(_on_message)
 

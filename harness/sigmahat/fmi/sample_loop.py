@@ -166,7 +166,7 @@ class Recorder:
 
 
 def present_values(slave: Slave, names: Iterable[str]) -> dict[str, Any]:
-    """Values of variables by name, as those of a Recorder. Raises FmuError if the FMU refuses."""
+    """Reads present values of variables by name. Raises FmuError if the FMU refuses."""
     recorder, loop = Recorder(slave, names, 1), SampleLoop()
     recorder.add_to(loop)
     loop.run(0, 1)

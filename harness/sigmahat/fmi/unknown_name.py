@@ -16,7 +16,7 @@ _RENAMED = {
 
 
 def unknown(kind: str, name: str, existing: Iterable[str]) -> str:
-    """One line with the unknown name, similar names and existing names; or with the new name.
+    """Returns one line with the unknown name, and similar, existing or new names.
 
     A list of more than 20 existing names is left out if a similar name was found.
 

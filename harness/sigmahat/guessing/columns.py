@@ -1,4 +1,4 @@
-"""The columns of a log for the guess: names, values, steps, counters, and times of the rows."""
+"""Analyses the columns of a log for the guess: names, values, steps, counters, and times."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -10,23 +10,23 @@ from sigmahat.guessing.words import Meaning, meaning
 from sigmahat.logs.log import Array, Log, LogError, check_together
 from sigmahat.logs.units import seconds, unwrap
 
-_MOSTLY = 0.99  # least fraction of the steps of a clock that increase
-_NAMED = 0.8  # the same where its name says that it has times: a logger may write rows twice
+_MOSTLY = 0.99  # least fraction of increasing steps in a column of times
+_NAMED = 0.8  # least fraction of increasing steps in a column that is named as times
 _EVEN = 0.05  # largest relative difference of a step from the usual step
-_MISSING = 1.8  # usual steps: in a longer step, rows are lost
-_GAP = 3.0  # usual steps: a longer step is a gap
+_MISSING = 1.8  # ratio of a time step to the usual step beyond which rows are lost
+_GAP = 3.0  # ratio of a time step to the usual step beyond which the step is a gap
 _EPOCH = {"ns": 1e17, "us": 1e14, "ms": 1e11, "s": 1e8}  # from about 1973 on
 _FASTEST, _SLOWEST = 2e-5, 0.2  # usual time between rows of a log [s]
-_SLOW = 0.05  # [s] between rows; above, a stiffness can hardly be estimated
+_SLOW = 0.05  # largest time between rows with which a stiffness can be estimated well [s]
 TURN = {"rad": 2 * np.pi, "mrad": 2000 * np.pi, "deg": 360.0, "turn": 1.0}
-"""A turn in units of angle."""
+"""Size of one turn in each unit of angle."""
 _DISTINCT = 20000  # number of values that are searched for the step of an encoder
-_STATES = 8  # a column with fewer whole numbers is a state or a flag
-_STEPS = 5  # fewer steps between distinct values show no encoder
+_STATES = 8  # least number of distinct values of a signal that is no state or flag
+_STEPS = 5  # least number of steps between distinct values of an encoder
 PERIODS = (360.0, 2 * np.pi, *(2.0**k for k in range(8, 33)))
 """Usual periods of a counter, in degrees, in radians and in counts."""
-_FEWEST_COUNTS = 100  # fewest counts of an encoder in a turn
-_JUMP = 0.5  # share of the range: at a larger step, a counter may start again
+_FEWEST_COUNTS = 100  # least number of encoder counts per turn
+_JUMP = 0.5  # least step at which a counter starts again, relative to the range of the values
 _SEEN = 0.02  # largest relative difference between a jump and a known period
 
 
@@ -42,11 +42,11 @@ class Facts:
     """Distance between neighbouring values of a quantised column; inf if it is not quantised."""
     wrap: float | None = None
     """Period after which a counter starts again; None if the column is no such counter."""
-    text: str = ""  # what is wrong with a column that contains something other than numbers
+    text: str = ""  # error message for a column that does not contain numbers
 
 
 def look_at(log: Log, name: str) -> tuple[Facts, Array]:
-    """Facts of a column and its values, unwrapped; no values if the column contains text."""
+    """Reads facts and unwrapped values of a column; no values if the column contains text."""
     try:
         values = log.read(name)
     except LogError as error:
@@ -66,13 +66,13 @@ def look_at(log: Log, name: str) -> tuple[Facts, Array]:
 
 
 def counts_per_turn(facts: Facts, unit: str) -> int:
-    """Counts per turn of the encoder, from the steps of a column; 0 if too few for an encoder."""
+    """Computes counts per turn of the encoder from the steps of a column; 0 without an encoder."""
     counts = TURN[unit] / facts.step if unit in TURN else 0.0
     return round(counts) if counts >= _FEWEST_COUNTS else 0
 
 
 def unit_of_steps(facts: Facts) -> str | None:
-    """Unit of an angle in which its steps are a usual part of a turn: 1/4096, 1/2000."""
+    """Finds the unit in which the steps of an angle are a usual part of a turn, such as 1/4096."""
     for unit in ("deg", "rad", "turn"):
         counts = TURN[unit] / facts.step
         n = round(counts)
@@ -83,8 +83,8 @@ def unit_of_steps(facts: Facts) -> str | None:
 
 
 def smallest_step(finite: Array, fewest: int) -> float:
-    """Step of which nearly all differences of the values are multiples; inf without such a step, or
-    with fewer steps between distinct values."""
+    """Finds the step of which almost all differences of the values are multiples; inf without such
+    a step, or with fewer steps between distinct values than `fewest`."""
     distinct = np.unique(finite)
     steps = np.diff(distinct)
     steps = steps[steps > 1e-9 * max(np.ptp(distinct), 1e-300)] if len(steps) else steps
@@ -96,12 +96,12 @@ def smallest_step(finite: Array, fewest: int) -> float:
     near = ratio < 10  # rounding of text hides the remainder of a larger ratio
     if np.count_nonzero(near) < fewest or np.mean(even[near]) <= 0.95:
         return np.inf
-    # Over many steps the last digits of the values matter less.
+    # The mean of many steps is more exact than the last digits of the values.
     return float(np.sum(steps[even]) / np.sum(np.round(ratio[even])))
 
 
 def _wrap(steps: Array, span: float) -> float | None:
-    """Period of a counter that starts again: a power of two, a full turn, or a round number."""
+    """Finds the period of a counter that starts again: power of two, turn, or round number."""
     size = np.abs(steps)
     jumps = np.flatnonzero(size > _JUMP * span)
     if span == 0 or not len(jumps):
@@ -126,7 +126,7 @@ def _wrap(steps: Array, span: float) -> float | None:
 
 
 def is_clock(meaning: Meaning, facts: Facts, values: Array) -> bool:
-    """Whether a column contains times, by its name, or because the values increase evenly."""
+    """Returns whether a column contains times, by its name or by evenly increasing values."""
     least = _NAMED if meaning.quantity == "time" else _MOSTLY
     if facts.text or not facts.varies or facts.increasing < least or facts.wrap is not None:
         return False
@@ -137,7 +137,7 @@ def is_clock(meaning: Meaning, facts: Facts, values: Array) -> bool:
 
 
 def unit_of(meaning: Meaning, facts: Facts, values: Array) -> str:
-    """Unit of a column of times: from its name, else from the size and the steps of its values."""
+    """Finds the unit of a column of times from its name, else from its values and their steps."""
     if meaning.unit in _EPOCH:
         return str(meaning.unit)
     for unit, least in _EPOCH.items():
@@ -151,7 +151,7 @@ def unit_of(meaning: Meaning, facts: Facts, values: Array) -> str:
 
 
 def likely_unit(unit: str, T: float) -> str | None:
-    """A more likely unit of the times, if the time between rows is implausible; else None.
+    """Proposes another unit of the times, if the time between rows is implausible; else None.
 
     unit  assumed unit of the times
     T     usual time between rows with that unit [s]
@@ -162,13 +162,13 @@ def likely_unit(unit: str, T: float) -> str | None:
 
 
 def _plausible(step: float, most: float) -> str | None:
-    """The unit in which a step is plausible, at most so long [s]; None without such a unit."""
+    """Finds the unit in which a time step is plausible, at most `most` [s]; None without one."""
     units = ("s", "ms", "us", "ns")
     return next((each for each in units if _FASTEST <= step * seconds(each) <= most), None)
 
 
 def interval(times: Array) -> float:
-    """Usual time between rows [s], from times in s: without gaps, rounding of the times and jitter;
+    """Computes the usual time between rows [s], from times [s] without gaps, rounding and jitter;
     1e-3 without two different times."""
     steps = np.diff(times[np.isfinite(times)])
     steps = steps[steps > 0]
@@ -186,9 +186,9 @@ def interval(times: Array) -> float:
 
 
 def _is_coarse(steps: Array, usual: float) -> bool:
-    """Whether the times are rounded times of an even clock: 1, 2, 1, 2 ms for 1.5 ms.
+    """Returns whether times are rounded times of an even clock: 1, 2, 1, 2 ms for 1.5 ms.
 
-    Then the error of each time is below the resolution, while the errors of lost rows add up.
+    With rounding, the error of each time is below the resolution. Errors by lost rows accumulate.
     """
     gaps = np.flatnonzero(steps >= _GAP * usual)
     edges = np.r_[-1, gaps, len(steps)]
@@ -202,7 +202,7 @@ def _is_coarse(steps: Array, usual: float) -> bool:
 
 
 def _round(T: float) -> float:
-    """The likely setting of a clock with jitter: a round number within 1 % of T, else T."""
+    """Rounds the period of a clock with jitter, if a round number is within 1 % of T."""
     short = float(f"{T:.2g}")
     rate = 1 / float(f"{1 / T:.2g}")
     best = min((short, rate), key=lambda each: abs(each / T - 1))
@@ -223,13 +223,13 @@ class Column:
     empty if the column has no numbers."""
 
 
-_LOST = 1e-3  # fraction of the rows: with fewer gaps, the parts between gaps are long enough
-_LONGEST_GAP = 10  # rows: the motion of a joint can be interpolated over such a gap
+_LOST = 1e-3  # least number of gaps that are interpolated, relative to the number of rows
+_LONGEST_GAP = 10  # longest gap in rows in which the motion of a joint can be interpolated
 
 
 def lost_rows(times: Array, T: float) -> float | None:
-    """Longest of the short gaps between rows, usually T apart [s], if single rows are lost
-    throughout; else None."""
+    """Returns the longest short gap between rows with a usual period T [s], if single rows are lost
+    throughout the log; else None."""
     steps = np.diff(times[np.isfinite(times)])
     short = steps[(steps > _MISSING * T) & (steps < (_LONGEST_GAP + 0.5) * T)]
     if not len(short) > _LOST * len(steps):
@@ -253,13 +253,13 @@ class Columns:
 
     @property
     def unreadable(self) -> list[str]:
-        """What is wrong with the columns whose names promise numbers, in sentences."""
+        """Error messages on columns with names of signals but without numbers."""
         texts = [each for each in self.signals if each.facts.text]
         return [each.facts.text for each in texts if each.meaning.quantity is not None]
 
 
 def read_columns(log: Log) -> Columns:
-    """Looks at every column of a log, once."""
+    """Reads and analyses every column of a log once."""
     check_together(log.path, sum(log.columns.values()))
     facts: dict[str, Facts] = {}
     values: dict[str, Array] = {}
@@ -294,7 +294,7 @@ def read_columns(log: Log) -> Columns:
 
 
 def _common(one: str, other: str) -> int:
-    """Number of first letters that both names share, up to the last separator."""
+    """Returns the number of leading letters that two names share, up to the last separator."""
     same = [a == b for a, b in zip(one, other, strict=False)]
     shared = one[: [*same, False].index(False)]
     return 1 + max(shared.rfind("/"), shared.rfind("."))
@@ -307,10 +307,10 @@ def _windows(
     times: Mapping[str, Array],
     T: float,
 ) -> dict[str, Array]:
-    """Values of the columns at common times, T apart, in the part with most motion."""
+    """Interpolates columns at common times, T apart, in the part of the log with most motion."""
 
     def samples(name: str) -> tuple[Array, Array]:
-        """Computed at each call, because samples of all columns would fill the memory."""
+        """Computes the samples at each call, because all columns together need much memory."""
         column = clocks[name]
         t = times[column] if column else np.arange(len(values[name]), dtype=np.float64) * T
         x = values[name]
@@ -337,10 +337,10 @@ def _windows(
 def _liveliest(
     samples: Callable[[], Iterable[tuple[Array, Array]]], start: float, end: float, length: float
 ) -> float:
-    """Start of the part of this length in which the columns together vary most."""
+    """Finds the start of the part with the given length in which the columns vary most."""
     if end - start < 2 * length:
         return start
-    # Only parts with samples: a clock that was set during the log jumps by years.
+    # Parts without samples are skipped, because a clock set during the log may jump by years.
     occupied = [
         np.unique((t[(t >= start) & (t < end)] - start) // length).astype(np.int64)
         for t, _ in samples()

@@ -3,7 +3,7 @@
     joints = guess(read_columns(open_log(path)))
     joints["knee"].ports["theta"].column
 
-A guess is data: `template.py` writes this guess as a configuration.
+The module template.py writes a guess as a configuration.
 """
 
 import re
@@ -20,7 +20,7 @@ _OF_A_JOINT = ("position", "torque", "current", None)
 
 
 def joints_of_log(columns: Sequence[Column], T: float) -> dict[str, Roles]:
-    """The joints of a log by name, a single joint "" if no column names one; T as for assign()."""
+    """Finds the joints of a log by name, a single joint "" without names; T as for assign()."""
     placed = [each for each in columns if each.meaning.quantity in _OF_A_JOINT]
     of_joints = {each.name: each.meaning.joints for each in placed}
     for groups in (_groups(placed, _all_words(placed)), _groups(placed, of_joints)):
@@ -47,7 +47,7 @@ def _groups(
 
 
 def _all_words(columns: Sequence[Column]) -> Mapping[str, Sequence[str]]:
-    """For each name: its words and numbers that are not in every name, and names of joints."""
+    """Returns for each column the words that are not in every name, and names of joints."""
     common = set.intersection(*(set(each.meaning.rest) for each in columns)) if columns else set()
     return {
         each.name: [
@@ -66,9 +66,9 @@ class JointGuess:
 
 
 def guess(columns: Columns) -> dict[str, JointGuess]:
-    """The joints of a log by their names, in the order of the columns; at least one joint.
+    """Guesses the joints of a log by name, in the order of the columns; at least one joint.
 
-    A joint lacks a port if no column of the log looks like this port.
+    A port is missing if the log has no column that fits the port.
     """
     found = {}
     for name, roles in joints_of_log(columns.signals, columns.window_T).items():
@@ -80,7 +80,7 @@ def guess(columns: Columns) -> dict[str, JointGuess]:
 
 
 def one_joint(log: Log, joints: Mapping[str, JointGuess], name: str) -> JointGuess:
-    """The joint of a name. Raises LogError, which lists all joints, if no joint has this name."""
+    """Returns the joint of the given name. Raises LogError with all names for a wrong name."""
     short = re.sub(r"^(joint|axis|j)_?(?=\d)", "", name.lower())
     for each, joint in joints.items():
         if each.lower() in (name.lower(), short):
@@ -92,9 +92,9 @@ def one_joint(log: Log, joints: Mapping[str, JointGuess], name: str) -> JointGue
 
 
 def guess_chosen(columns: Columns, names: Mapping[str, str | None]) -> dict[str, PortGuess]:
-    """Units, signs, zeros and gear of ports whose columns the user has chosen.
+    """Guesses units, signs, zeros and gear of ports whose columns the user has chosen.
 
-    names  of columns, by port; columns that do not move are left out
+    names  names of columns by port; constant columns are left out
     """
     moving = {each.name: each for each in columns.signals if len(each.window)}
     chosen = {port: moving[name] for port, name in names.items() if name in moving}

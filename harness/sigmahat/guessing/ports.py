@@ -1,4 +1,4 @@
-"""Units, signs, zeros and gear of the columns that feed the ports of one joint."""
+"""Guesses units, signs, zeros and gear of the columns for the ports of one joint."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from sigmahat.guessing.relations import line, scale_of_derivative
 from sigmahat.guessing.roles import Role, Roles
 from sigmahat.logs.log import Array
 
-_AFTER_GEAR = 1.4  # ratio of motor to link: below, the motor is measured after its gear
+_AFTER_GEAR = 1.4  # largest ratio of motor to link motion if the encoder is after the gear
 _AS_FAR = 0.15  # largest relative difference between the motions of motor and link after the gear
 _WHOLE = 0.002  # relative difference up to which a gear ratio is rounded to an integer
-_STIFF = 0.005  # ratio of deformation to motion: above, the motion does not determine the gear
-_APART = 4.0  # standard deviations of the deformation: if its mean is larger, the zeros differ
-_RADIANS = 6.6  # a joint that turns by more is in degrees
-_MILLI = 100.0  # amperes: a larger current is in mA
+_STIFF = 0.005  # largest ratio of deformation to motion if the motion determines the gear ratio
+_APART = 4.0  # largest mean of the deformation with equal zeros, in standard deviations
+_RADIANS = 6.6  # largest magnitude of a joint position in rad; a larger position is in degrees
+_MILLI = 100.0  # largest magnitude of a current in A; a larger current is in mA
 _SINGLE_TURN = (2.0**10, 2.0**15)  # wraps of absolute encoders; 16 and 32 bits are counters
-_SURE = 0.8  # from this correlation with the deformation, the sign of a torque sensor is sure
+_SURE = 0.8  # least correlation with the deformation that determines the sign of a torque sensor
 
 
 @dataclass
@@ -29,14 +29,14 @@ class PortGuess:
     """The column of a port, as the keys of a configuration describe it."""
 
     column: str
-    why: str  # why this column
+    why: str  # reason for the choice of the column
     low: float
     high: float  # range of its values
-    unit: str | None  # None if the unit cannot be guessed: then the user has to fill in `scale`
+    unit: str | None  # None if the unit cannot be guessed, and the user has to fill in `scale`
     wrap: float | None
     """Period of a counter that starts again, in the unit of the column; None without a period."""
     time: str | None  # the time column of the port, if it differs from the time column of the joint
-    notes: dict[str, str]  # what to know or to check, by key
+    notes: dict[str, str]  # comments for the user by key of the configuration
     sign: int = 1  # 1 or -1
     zero: float = 0.0  # zero of the port, in the unit of the column
     gear_ratio: float | None = 1.0  # None if the user has to fill in the gear ratio
@@ -52,7 +52,7 @@ class PortGuess:
 
 
 def guess_ports(roles: Roles, columns: Columns, main: str | None) -> dict[str, PortGuess]:
-    """The guess for every port that has a column; main is the time column of the joint."""
+    """Guesses every port that has a column; main is the time column of the joint."""
     ports = {port: _plain(port, role, main) for port, role in roles.ports.items()}
     angles = {port: roles.ports[port].column for port in ("theta", "q") if port in ports}
     for port, column in angles.items():
@@ -67,7 +67,7 @@ def guess_ports(roles: Roles, columns: Columns, main: str | None) -> dict[str, P
 
 
 def _plain(port: str, role: Role, main: str | None) -> PortGuess:
-    """A port whose unit is known only from the name of its column."""
+    """Creates a port with the unit from the name of the column."""
     column = role.column
     facts, unit = column.facts, column.meaning.unit
     notes: dict[str, str] = {}
@@ -82,7 +82,7 @@ def _plain(port: str, role: Role, main: str | None) -> PortGuess:
 
 
 def _angle(column: Column, columns: Columns, is_link: bool) -> tuple[str, str]:
-    """Unit of a position, and how the unit was found; "" if the name of the column has a unit."""
+    """Guesses the unit of a position, and the reason; "" if the column name contains a unit."""
     if column.meaning.unit is not None:
         return column.meaning.unit, ""
     if column.facts.integer:
@@ -103,7 +103,7 @@ def _angle(column: Column, columns: Columns, is_link: bool) -> tuple[str, str]:
 
 
 def _unit_by_velocity(column: Column, signals: Sequence[Column], T: float) -> str | None:
-    """Unit of a position, from a column with its derivative whose name has a unit."""
+    """Finds the unit of a position by a column with its velocity, whose name contains a unit."""
     for other in signals:
         speed = other.meaning.speed
         unit, _, minute = (speed or "").partition("/")
@@ -112,7 +112,7 @@ def _unit_by_velocity(column: Column, signals: Sequence[Column], T: float) -> st
         scale = scale_of_derivative(column.window, other.window, T)
         if scale is None:
             continue
-        turn = TURN[unit] * (60 if minute else 1) / abs(scale)  # of the joint, in its unit
+        turn = TURN[unit] * (60 if minute else 1) / abs(scale)  # one turn in the unit of the column
         best = min(TURN, key=lambda each: abs(math.log(turn / TURN[each])))
         if abs(math.log(turn / TURN[best])) < 0.05:
             return best
@@ -131,7 +131,7 @@ def _set_unit(port: PortGuess, column: Column, columns: Columns, is_link: bool) 
 
 
 def _set_together(theta: PortGuess, q: PortGuess, motor: Column, link: Column) -> None:
-    """Gear, sign and zeros of both positions, from the motion of the link with the motor."""
+    """Guesses gear, sign and zeros of both positions, from the common motion of motor and link."""
     fitted = line(motor.window, link.window)
     if fitted.slope == 0:
         return
@@ -157,7 +157,7 @@ def _is_vague(port: PortGuess) -> bool:
 
 
 def _set_unit_by_other(port: PortGuess, other: PortGuess, slope: float) -> None:
-    """The unit of a position from the other one; its values are slope times the other values."""
+    """Guesses the unit of a position from the other position; slope: ratio of both values."""
     if other.unit in TURN:
         same = [unit for unit in TURN if abs(slope * TURN[other.unit] / TURN[unit] - 1) < _AS_FAR]
         port.unit = same[0] if same else other.unit
@@ -165,7 +165,7 @@ def _set_unit_by_other(port: PortGuess, other: PortGuess, slope: float) -> None:
 
 
 def _set_gear(theta: PortGuess, q: PortGuess, slope: float, rest: float) -> None:
-    """The gear ratio if both units are known and the joint is stiff; else a note with a hint.
+    """Sets the gear ratio if both units are known and the joint is stiff; else adds a note.
 
     slope  ratio of the values of theta to the values of q
     rest   standard deviation of the residual of this slope, relative to q
@@ -193,7 +193,7 @@ def _set_gear(theta: PortGuess, q: PortGuess, slope: float, rest: float) -> None
 
 
 def _ratio(theta: PortGuess, q: PortGuess) -> float | None:
-    """Ratio of the values of q to theta without deformation; None if not known."""
+    """Returns the ratio of q to theta without deformation; None for an unknown ratio."""
     if theta.unit not in TURN or q.unit not in TURN or not theta.gear_ratio:
         return None
     return TURN[q.unit] / TURN[theta.unit] / theta.gear_ratio
@@ -239,7 +239,7 @@ def _set_sensor(ports: Mapping[str, PortGuess], roles: Roles) -> None:
 
 
 def _deformation(ports: Mapping[str, PortGuess], roles: Roles) -> Array | None:
-    """q - theta in the unit of q, or q alone; None if the ratio of both is not known."""
+    """Computes q - theta in the unit of q, or q without theta; None if the gear is unknown."""
     if "q" not in ports:
         return None
     q: Array = ports["q"].sign * roles.ports["q"].column.window

@@ -1,4 +1,4 @@
-"""Relations between columns: copies, derivatives, the equation of the motor."""
+"""Finds relations between columns: copies, derivatives, and the motor equation."""
 
 import math
 from collections.abc import Sequence
@@ -9,16 +9,16 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from sigmahat.logs.log import Array
 
-_SMOOTH = 15  # samples of the polynomial with which columns are differentiated
-_INNER = slice(_SMOOTH // 2, -(_SMOOTH // 2))  # samples that have a polynomial around them
-_DERIVATIVE = 0.97  # from this correlation on, a column is the derivative of another column
-_COPY = 1e-4  # up to this relative residual of a fit, a column is a copy in another unit
+_SMOOTH = 15  # number of samples in the window of a differentiation by polynomials
+_INNER = slice(_SMOOTH // 2, -(_SMOOTH // 2))  # samples with a complete window
+_DERIVATIVE = 0.97  # least correlation of a column with the derivative of another column
+_COPY = 1e-4  # largest relative residual of a column that is a copy in another unit
 _BLOCKS = 8
 
 
 @dataclass(frozen=True)
 class Line:
-    """y = offset + slope x, fitted."""
+    """A fitted line y = offset + slope x."""
 
     slope: float
     offset: float
@@ -27,7 +27,7 @@ class Line:
 
 
 def line(x: Array, y: Array) -> Line:
-    """The line through two columns of one size; correlation 0 if a column does not vary."""
+    """Fits a line to two columns of equal size; correlation 0 if a column does not vary."""
     x_0, y_0 = x - x.mean(), y - y.mean()
     xx, yy, xy = float(x_0 @ x_0), float(y_0 @ y_0), float(x_0 @ y_0)
     if xx == 0 or yy == 0:
@@ -38,12 +38,12 @@ def line(x: Array, y: Array) -> Line:
 
 
 def is_copy(x: Array, y: Array) -> bool:
-    """Whether one column is the other column in another unit."""
+    """Returns whether one column is a copy of the other column in another unit."""
     return line(x, y).rest < _COPY
 
 
 def smooth(x: Array, T: float = 1.0, order: int = 0) -> Array:
-    """Derivative of samples T apart, along the last axis, at the samples _INNER.
+    """Computes a derivative of samples T apart, along the last axis, at the samples _INNER.
 
     A cubic polynomial is fitted to the samples around each sample (Savitzky and Golay, Analytical
     Chemistry 36:1627-1639, 1964). The import of scipy.signal would take two seconds.
@@ -55,7 +55,7 @@ def smooth(x: Array, T: float = 1.0, order: int = 0) -> Array:
 
 
 def derivatives(columns: Sequence[Array], T: float) -> Sequence[bool]:
-    """Whether each column is the derivative of another column; samples T apart."""
+    """Returns for each column whether it is a derivative of another column; samples T apart."""
     if not columns or len(columns[0]) < 4 * _SMOOTH:
         return [False] * len(columns)
     x = np.array(columns)
@@ -70,7 +70,7 @@ def derivatives(columns: Sequence[Array], T: float) -> Sequence[bool]:
 
 
 def scale_of_derivative(x: Array, v: Array, T: float) -> float | None:
-    """Ratio of v to the derivative of x; None if v is not the derivative of x."""
+    """Returns the ratio of v to the derivative of x; None if v is not the derivative of x."""
     if len(x) < 4 * _SMOOTH:
         return None
     fitted = line(smooth(x, T, 1), smooth(v))
@@ -89,10 +89,10 @@ def drive(x: Array, y: Array, tau: Array, T: float) -> Drive:
     """Relates a torque to two positions, whatever their units are; all [size: samples].
 
     tau = B x'' + D x' + C sign(x') + K (x - y) for a linear spring, with only the part of y that is
-    not proportional to x. The equation has the acceleration of the motor, not of the
-    link. So the equation explains the torque better if x is the motor. The sign of the torque
-    follows from friction, which takes power from the motor on average. But a hand that moves the
-    link gives power to the motor. Then the deformation follows the velocity, and `sign` is 0.
+    not proportional to x. The equation contains the acceleration of the motor, not of the link.
+    Therefore the equation explains the torque better if x is the motor position. The sign of the
+    torque follows from friction, which dissipates power of the motor on average. If a hand moves
+    the link, the deformation follows the velocity, and `sign` is 0.
     """
     if len(x) < 8 * _SMOOTH or not np.ptp(x) or not np.ptp(tau):
         return Drive(0.0, 0)
@@ -113,7 +113,7 @@ def drive(x: Array, y: Array, tau: Array, T: float) -> Drive:
 
 
 def _sign(power: Array) -> int:
-    """Sign of the mean; 0 if the mean is not significant over blocks of time."""
+    """Returns the sign of the mean; 0 if means of time blocks show no significant sign."""
     means = np.array([block.mean() for block in np.array_split(power, _BLOCKS)])
     error = float(means.std(ddof=1)) / np.sqrt(len(means))
     return int(np.sign(means.mean())) if abs(means.mean()) > 3 * error else 0

@@ -16,10 +16,10 @@ _REFERENCE, _COMPUTED, _COPY, _APART = -6.0, -3.0, -5.0, -2.0
 _OF_PORTS, _NO_PORT = ("position", "torque", "current"), -8.0
 _CLOSE, _ALIKE, _UNLIKE = 0.98, 0.9, 0.7
 """Correlations of two columns that are sure, likely, and unlikely positions of one joint."""
-_SAME = 0.995  # correlation with a position from which on a column is no torque
-_BETTER = 0.7  # a swap of motor and link must reduce the unexplained torque to this fraction
+_SAME = 0.995  # largest correlation of a torque with a position
+_BETTER = 0.7  # largest ratio of the unexplained torque after a swap of motor and link
 _MOST_COMPARED = 32  # columns of one joint; the time grows with the square of this number
-_EXPLAINED = 0.5  # least fraction of a torque without a name that the motion explains
+_EXPLAINED = 0.5  # least fraction of an unnamed torque that the motion explains
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class Roles:
 
 
 def assign(columns: Sequence[Column], T: float) -> Roles:
-    """Ports of the columns of one joint, whose windows have samples T apart [s]."""
+    """Assigns the columns of one joint to ports; samples in the column windows are T apart [s]."""
     moving = _few([each for each in columns if each.facts.varies and len(each.window)])
     positions = _positions(moving, T)
     ports: dict[str, Role] = dict(_pair(positions))
@@ -59,14 +59,14 @@ def assign(columns: Sequence[Column], T: float) -> Roles:
 
 
 def _few(columns: list[Column]) -> list[Column]:
-    """Columns to compare in pairs: columns with the most points of their names are kept."""
+    """Limits the columns that are compared in pairs to the columns with the best names."""
     kept = sorted(columns, key=_said, reverse=True)[:_MOST_COMPARED]
     names = {each.name for each in kept}
     return [each for each in columns if each.name in names]
 
 
 def _said(column: Column) -> float:
-    """Points of a name for any port; names without a meaning are between good and bad names."""
+    """Scores the name of a column for any port; unknown names are between good and bad names."""
     quantity = column.meaning.quantity
     points = _named(column) + _QUANTITY * (quantity in _OF_PORTS)
     points += _NO_PORT * (quantity not in (*_OF_PORTS, None))
@@ -74,20 +74,20 @@ def _said(column: Column) -> float:
 
 
 def _named(column: Column) -> float:
-    """Points of a name: positive if it gives a side of the joint, negative for computed signals."""
+    """Scores a name: positive with a side of the joint, negative for computed signals."""
     meaning = column.meaning
     points = _SAID * (meaning.side is not None) + _SUGGESTED * (meaning.suggested is not None)
     return points + _COMPUTED * meaning.computed
 
 
 def chosen_roles(columns: Mapping[str, Column], T: float) -> Roles:
-    """The roles of columns that the user has chosen, by port; T as for assign()."""
+    """Creates the roles of columns that the user has chosen, by port; T as for assign()."""
     ports = {port: Role(column, "chosen") for port, column in columns.items()}
     return Roles(ports, _drive(ports, T))
 
 
 def _swapped(ports: Mapping[str, Role]) -> dict[str, Role]:
-    """Ports with motor and link swapped; empty if the names decide, or a port is missing."""
+    """Swaps motor and link; returns no ports if the names decide, or if a port is missing."""
     if not {"theta", "q", "tau"} <= ports.keys():
         return {}
     theta, q = ports["theta"].column, ports["q"].column
@@ -122,11 +122,11 @@ def _pair(columns: Sequence[Column]) -> Mapping[str, Role]:
     correlation = np.abs(np.corrcoef([each.window for each in columns]))
 
     def points(places: tuple[int, int]) -> float:
-        """Points of two columns as motor and link, in this order."""
+        """Scores two columns as positions of motor and link, in this order."""
         theta, q = (columns[place] for place in places)
         together = float(correlation[places])
         found = _points(theta, "motor") + _points(q, "link")
-        # A motor before its gear moves by larger numbers.
+        # The motor position before the gear has larger values than the link position.
         found += 0.5 * (abs(line(q.window, theta.window).slope) > 1.5)
         found += (together > _ALIKE) + (together > _CLOSE) + _APART * (together < _UNLIKE)
         return found + _COPY * is_copy(theta.window, q.window)
@@ -144,7 +144,7 @@ def _pair(columns: Sequence[Column]) -> Mapping[str, Role]:
 
 
 def _side(column: Column, side: str) -> float:
-    """Points of a name for a side of the joint: motor or link."""
+    """Scores a name for a side of the joint: motor or link."""
     meaning = column.meaning
     if meaning.side is not None:
         return _SAID if meaning.side == side else -_SAID
@@ -154,14 +154,14 @@ def _side(column: Column, side: str) -> float:
 
 
 def _points(column: Column, side: str) -> float:
-    """Score of a column as a candidate for the measured position of a side, motor or link."""
+    """Scores a column as a candidate for the measured position of motor or link."""
     meaning = column.meaning
     points = _side(column, side) + _QUANTITY * (meaning.quantity == "position")
     return points + _REFERENCE * meaning.reference + _COMPUTED * meaning.computed
 
 
 def _torques(columns: Sequence[Column], ports: Mapping[str, Role], T: float) -> dict[str, Role]:
-    """The torque of the motor, and the measured torque of the link."""
+    """Finds the columns of the motor torque, and of the torque sensor at the link."""
     torques = [each for each in columns if each.meaning.quantity == "torque"]
     currents = [each for each in columns if each.meaning.quantity == "current"]
     possible = [each for each in (*torques, *currents) if each.meaning.side != "setting"]
@@ -180,7 +180,7 @@ def _torques(columns: Sequence[Column], ports: Mapping[str, Role], T: float) -> 
 
 
 def _is_sensor(column: Column, others: Sequence[Column], ports: Mapping[str, Role]) -> bool:
-    """Whether a sensor measures a torque after the motor, by its name or the other columns."""
+    """Returns whether a column is a sensor torque, by its name or by the other columns."""
     meaning = column.meaning
     if meaning.side is not None or _is_motor(column):
         return meaning.side in ("sensor", "link")
@@ -195,7 +195,7 @@ def _is_motor(column: Column) -> bool:
 
 
 def _torque_points(column: Column) -> float:
-    # A current also needs a torque constant.
+    # A torque is better than a current, which needs a torque constant.
     points = _named(column) + _QUANTITY * (column.meaning.quantity == "torque")
     return points + 0.5 * _REFERENCE * column.meaning.reference
 
@@ -203,7 +203,7 @@ def _torque_points(column: Column) -> float:
 def _silent_torque(
     columns: Sequence[Column], ports: Mapping[str, Role], T: float
 ) -> dict[str, Role]:
-    """The column without a name that the motion explains best."""
+    """Finds the unnamed column that the motion explains best as a torque."""
     theta, q = (ports[port].column.window for port in ("theta", "q"))
     explained = [
         (drive(theta, q, each.window, T).explained, each)
@@ -219,7 +219,7 @@ def _silent_torque(
 
 
 def _setting(columns: Sequence[Column], ports: Mapping[str, Role]) -> dict[str, Role]:
-    """The motor that sets the stiffness: by its name, or a second, independent motor."""
+    """Finds the motor that sets the stiffness: by its name, or as a second, independent motor."""
     windows = [role.column.window for role in ports.values()]
     possible = [
         each

@@ -1,4 +1,4 @@
-"""The configuration that `sigmahat init` writes: the guess, and comments on what to check."""
+"""Writes the configuration of `sigmahat init`: the guess, and comments on values to check."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -25,7 +25,7 @@ MEANINGS = {
     "tau": "torque of the principal motor, on its axis before the gear",
     "tau_e_sensor": "measured flexibility torque, for modality Sensor",
 }
-"""What the ports are."""
+"""Descriptions of the ports for the user."""
 _IN_RAD = {unit: 2 * math.pi / turn for unit, turn in TURN.items()}
 _IN_NM = {"N.m": 1.0, "mN.m": 1e-3, "kN.m": 1e3, "N.cm": 1e-2}
 _RANGE = (1.0, 100.0)  # of the set-point
@@ -33,8 +33,8 @@ _MOST_LISTED = 200  # columns: with more lines, the file would be too long to be
 
 
 def write(log: Log, columns: Columns, joints: Mapping[str, JointGuess]) -> str:
-    """The text of a configuration of these joints. Common values are written once. If no column
-    looks like a port, the text asks for a column."""
+    """Formats a configuration of the given joints, with common values only once. If no column fits
+    a port, the text asks the user for a column."""
     several = len(joints) > 1
     head = {
         "log": log.path.name,
@@ -52,7 +52,7 @@ def write(log: Log, columns: Columns, joints: Mapping[str, JointGuess]) -> str:
 
 
 def port_table(name: str, port: PortGuess) -> Table:
-    """The section of a port that has a column; comments say what to check and to fill in."""
+    """Creates the section of a port; comments list values to be checked or filled in."""
     text = _TEMPLATES.get_template("port.jinja").render(name=name, port=port) + "\n"
     found: Any = tomlkit.parse(text)["ports"]
     table: Table = found[name]
@@ -60,7 +60,7 @@ def port_table(name: str, port: PortGuess) -> Table:
 
 
 def _listed(log: Log, columns: Columns, joints: Mapping[str, JointGuess]) -> Iterator[str]:
-    """A line for each column, but not more lines than fit a configuration."""
+    """Yields a line of text for each column, but at most 200 lines."""
     what = dict.fromkeys(log.columns, "another time")
     what |= {column.name: _unused(column) for column in columns.signals}
     first = next(iter(joints.values()))
@@ -80,7 +80,7 @@ def _listed(log: Log, columns: Columns, joints: Mapping[str, JointGuess]) -> Ite
 
 
 def _unused(column: Column) -> str:
-    """Why a column feeds no port."""
+    """Explains why a column is not used for any port."""
     meaning, facts = column.meaning, column.facts
     if facts.text:
         return "text"
@@ -99,14 +99,14 @@ def _unused(column: Column) -> str:
 
 
 def _key(name: str, value: str | float, comment: str | None = None) -> str:
-    """A line of TOML; a whole number is an integer there."""
+    """Formats a line of TOML; a whole number is written as an integer."""
     whole = isinstance(value, float) and value.is_integer() and abs(value) < 2**53
     text = tomlkit.item(int(value) if whole else value).as_string()
     return f"{name} = {text}   # {comment}" if comment else f"{name} = {text}"
 
 
 def period_of(guess: JointGuess) -> str:
-    """The unit of the sample period, and whether it is plausible."""
+    """Describes the unit of the sample period, and whether the period is plausible."""
     if guess.time is None:
         return "[s] FILL IN: time between two rows; the log has no times"
     unit, T = guess.clock.unit, guess.clock.interval
@@ -121,7 +121,7 @@ def period_of(guess: JointGuess) -> str:
 
 
 def _largest(port: PortGuess) -> float:
-    """Largest magnitude of a port in the unit of its column, and a fifth more."""
+    """Returns 1.2 times the largest magnitude of a port, in the unit of the column."""
     return float(f"{1.2 * max(abs(port.low - port.zero), abs(port.high - port.zero)):.3g}")
 
 
@@ -134,7 +134,7 @@ def _encoder(port: PortGuess) -> tuple[int, str]:
 
 
 def _scale_of(set_point: PortGuess) -> float:
-    """A scale with which the values of a set-point are about 1 to 100."""
+    """Chooses a scale with which the largest set-point is between 1 and 100."""
     in_port = _IN_RAD.get(set_point.unit or "", 1.0)
     low, high = set_point.low - set_point.zero, set_point.high - set_point.zero
     largest = in_port * max(abs(low), abs(high))

@@ -1,4 +1,4 @@
-"""Meaning of the name of a column: quantity, side of the joint, unit, and name of the joint."""
+"""Interprets the name of a column: quantity, side of the joint, unit, and name of the joint."""
 
 import re
 import unicodedata
@@ -11,14 +11,14 @@ from typing import Any
 import tomlkit
 
 _ORDER = ("other", "acceleration", "velocity", "position", "current", "torque", "time", "index")
-"""Quantities; in a name with several, the first in this order counts: "current position"."""
+"""Quantities by priority: the first one counts in a name with several, as "current position"."""
 _UNIT_OF = {
     **dict.fromkeys(("rad", "mrad", "deg", "turn"), "position"),
     **dict.fromkeys(("N.m", "mN.m", "kN.m", "N.cm"), "torque"),
     **dict.fromkeys(("A", "mA"), "current"),
     **dict.fromkeys(("s", "ms", "us", "ns"), "time"),
 }
-_INSIDE, _AT_AN_END, _PART = 5, 4, 3  # letters of a word that is found inside of a longer word
+_INSIDE, _AT_AN_END, _PART = 5, 4, 3  # least numbers of letters of a word in a longer word
 _LETTERS = str.maketrans({"ß": "ss", "°": "deg", "µ": "u", "μ": "u", "θ": "theta", "τ": "tau"})
 _BRACKET = re.compile(r"[\[({<]([^\[\](){}<>]*)[\])}>]\s*$")
 _TOKEN = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+|\d+")
@@ -26,7 +26,7 @@ _TOKEN = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+|\d+")
 
 @dataclass(frozen=True)
 class Meaning:
-    """Meaning of a name. A field is None if the name has no such word."""
+    """Meaning of the name of a column. A field is None if the name contains no such word."""
 
     quantity: str | None  # time, index, position, velocity, acceleration, torque, current, or other
     side: str | None  # motor, link, setting (what sets the stiffness), or sensor (of the torque)
@@ -76,13 +76,13 @@ def meaning(name: str) -> Meaning:
 
 
 def _is_time(part: str) -> bool:
-    """Whether the last part of a path names a time: the times of a topic, /current.time"""
+    """Returns whether the last part of a path names a time, as in "/current.time"."""
     entry = _vocabulary().entries.get(_plain(part).lower())
     return entry is not None and entry.get("quantity") == "time" and "symbol" not in entry
 
 
 def _quantity(entries: Sequence[_Entry]) -> str | None:
-    """The quantity from a word, else from a symbol."""
+    """Returns the quantity that a name mentions by a word, else by a symbol."""
     words = [entry for entry in entries if "symbol" not in entry]
     return _first("quantity", _ORDER, words) or _first("quantity", _ORDER, entries)
 
@@ -93,7 +93,7 @@ def _first(section: str, order: Sequence[str], entries: Sequence[_Entry]) -> str
 
 
 def _plain(text: str) -> str:
-    """The text without accents, and with letters for symbols; upper case stays."""
+    """Replaces accents and symbols of a text by plain letters; upper case is kept."""
     decomposed = unicodedata.normalize("NFKD", text.translate(_LETTERS))
     return "".join(each for each in decomposed if not unicodedata.combining(each))
 
@@ -108,7 +108,7 @@ class _Unit:
 
 
 def _without_unit(name: str) -> tuple[_Unit, list[str]]:
-    """The unit at the end of a name, and the other words."""
+    """Splits a name into the unit at its end and the other words."""
     text, units = _plain(name), _vocabulary().units
     bracket = _BRACKET.search(text)
     if bracket:
@@ -128,7 +128,7 @@ def _without_unit(name: str) -> tuple[_Unit, list[str]]:
 
 
 def _is_unit(tokens: Sequence[str], count: int, unit: _Unit) -> bool:
-    """Whether the last words are a unit: a single letter must fit the other words."""
+    """Returns whether the last words are a unit; a single letter must fit the other words."""
     if count > 1 or len(tokens[-1]) > 1:
         return len(tokens) > count or len(tokens[-1]) > 2
     before = _quantity([entry for _, entry in _entries(tokens[:-1]) if entry is not None])
@@ -138,7 +138,7 @@ def _is_unit(tokens: Sequence[str], count: int, unit: _Unit) -> bool:
 
 
 def _entries(tokens: Sequence[str]) -> Iterator[tuple[str, _Entry | None]]:
-    """Words with their meanings in the vocabulary, None for unknown words."""
+    """Yields words with their entries in the vocabulary, None for unknown words."""
     entries = _vocabulary().entries
     words = [token.lower() for token in tokens]
     i = 0
@@ -157,7 +157,7 @@ def _entries(tokens: Sequence[str]) -> Iterator[tuple[str, _Entry | None]]:
 
 @cache
 def _parts(word: str) -> tuple[str, ...]:
-    """Known words inside of a longer word, and the remaining parts."""
+    """Splits a long word into known words and the remaining parts."""
     entries = _vocabulary().entries
     if word in entries or word.isdigit():
         return (word,)
@@ -177,7 +177,7 @@ def _parts(word: str) -> tuple[str, ...]:
 
 @dataclass(frozen=True)
 class _Vocabulary:
-    """The file vocabulary.toml by words."""
+    """The contents of vocabulary.toml, by words."""
 
     entries: Mapping[str, _Entry]
     units: Mapping[str, _Unit]

@@ -1,7 +1,7 @@
-"""The frequency up to which the torque of the spring causes the deformation.
+"""Computes the frequency up to which the torque of the spring causes the deformation.
 
-Above this frequency, the measured deformation consists of errors: of gears, of couplings, of the
-encoders between their counts. As a regressor, these errors make the stiffness too small.
+Above this frequency, the measured deformation consists of errors of gears, couplings and encoders.
+In a regressor, these errors would make the stiffness too small.
 """
 
 import itertools
@@ -15,21 +15,21 @@ from sigmahat.identification.noise import TorqueNoise
 from sigmahat.identification.regression import MOTOR, Equations, Form, Signals
 from sigmahat.logs.log import Array
 
-_FIRST = 5.0  # [Hz] low pass of the fit that the spectra are computed from
-_SEGMENT = 2.0  # [s] of a spectrum
+_FIRST = 5.0  # low pass of the fit from which the spectra are computed [Hz]
+_SEGMENT = 2.0  # duration of a segment of a spectrum [s]
 _LOWEST = 2.0  # [Hz]
 _COHERENT = 0.5
-_LARGER = 4.0  # power of the deformation over what the noise of the torque explains
-_BUTTERWORTH = 1.11  # noise bandwidth of the low pass over its frequency
-_HIDDEN = 0.5  # variance of the rounding over the one of the deformation that the motor leaves
+_LARGER = 4.0  # least ratio of the power of the deformation to the power from the torque noise
+_BUTTERWORTH = 1.11  # noise bandwidth of the low pass divided by its frequency
+_HIDDEN = 0.5  # least ratio of the rounding variance to the residual variance of the deformation
 
 
 def coherent_range(piece: Signals, gamma: float, noise: TorqueNoise) -> float:
-    """Frequency above which the deformation is noise [Hz]; inf if it is not up to the bandwidth.
+    """Computes the frequency above which the deformation is noise [Hz]; inf without noise.
 
-    Bands of half an octave. From the frequency on, the coherence of deformation and torque is below
-    one half everywhere. At the frequency, the deformation has more power than the noise of the
-    torque explains.
+    The frequency is found in bands of half an octave. Above the frequency, the coherence of
+    deformation and torque is below one half everywhere. At the frequency, the deformation has more
+    power than the noise of the torque explains.
     """
     T, highest = noise.T, noise.bandwidth
     if highest <= _LOWEST or len(piece.theta) * T < 2 * _SEGMENT:
@@ -60,12 +60,12 @@ def coherent_range(piece: Signals, gamma: float, noise: TorqueNoise) -> float:
 
 
 def spectra(x: Array, y: Array, h: float) -> tuple[Array, Array, Array]:
-    """Frequencies [Hz], the coherence of two signals, and the density of y, one-sided.
+    """Computes frequencies [Hz], the coherence of two signals, and the one-sided density of y.
 
-    Welch's method: segments of two seconds, half overlapping, with Hann windows and without their
-    means. scipy.signal, which has it, takes a second to import.
+    Welch's method uses segments of two seconds with half overlap and Hann windows, without means.
+    The module scipy.signal has this method too, but takes a second to import.
 
-    x, y  of one size, h [s] apart, at least two seconds
+    x, y  signals of one size, samples h [s] apart, at least two seconds
     """
     segment = round(_SEGMENT / h)
     window = np.hanning(segment + 1)[:-1]
@@ -81,13 +81,13 @@ def spectra(x: Array, y: Array, h: float) -> tuple[Array, Array, Array]:
 
 
 def is_hidden(system: Equations, f_0: float, T: float, noise: float, known: bool) -> bool:
-    """Whether the deformation is a function of the motor's motion, but for rounding. Then the log
-    shows only the sum of inertia, friction and load.
+    """Returns whether the deformation is a function of the motor motion, apart from rounding. Such
+    a log shows only the sum of inertia, friction and load.
 
-    A free load in one slow sine is an example: the spring has the torque of one more inertia.
+    An example is a free load in one slow sine: the spring torque looks like an added inertia.
 
     system  the equations, see plain_equations()
-    f_0, T  their low pass [Hz], and the time between samples [s]
+    f_0, T  low pass of the equations [Hz], and the time between samples [s]
     noise   variance of the rounding of the deformation [rad2]
     known   whether the inertia is known
     """

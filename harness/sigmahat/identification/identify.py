@@ -1,7 +1,7 @@
 """The job of `sigmahat identify`: motor data and settings of the estimator, off line from a log.
 
-Results: B, D_theta and Coulomb friction with 95 % intervals, and the torque constant if there is a
-torque sensor. Further results: noise of the signals, bandwidth and V_a of the filters, and orders.
+The results are B, D_theta and Coulomb friction with 95 % intervals, and with a torque sensor the
+torque constant. Further results are noise, filter settings, and orders of the polynomial.
 """
 
 import math
@@ -28,13 +28,13 @@ from sigmahat.logs.replay import parameters, play
 from sigmahat.logs.sampling import Samples, sample, stretches
 
 _LONGEST = 600.0  # [s] of a log that are used
-_FEWEST = 1000  # samples of the longest stretch that are left if the motor moves slowly
+_FEWEST = 1000  # least number of samples kept from the longest stretch of a slow motion
 _RESOLVED = 0.07
 """Largest bandwidth of the estimator, in sampling frequencies. For joints that are sampled at 250
-Hz, other values reduce the coverage. 0.05 is too slow; with 0.15, the signals between samples are
-no lines."""
+Hz, other values reduce the coverage of the intervals. A value of 0.05 is too slow. With 0.15,
+signals are not linear between samples."""
 _V_A = tuple(10.0**e for e in np.arange(5.0, 13.1, 0.5))
-_MATTERS = 0.05  # share of the covered deformation; prior.bias covers smaller errors of zero
+_MATTERS = 0.05  # smallest relevant error of zero, relative to the range of the deformation
 _V_A_TICKS = 10000
 _NO_TORQUE = (
     "the torque of the motor is only noise: such a log does not show its inertia and friction, and "
@@ -54,12 +54,12 @@ _HIDDEN = (
     "encoders: the log cannot tell the inertia of the motor from the inertia of the load; record "
     "more frequencies, or give motor.B and prior.B"
 )
-_SLOWEST = 0.25  # between samples [s]: as long as a block of errors
-_V_A_HIGHEST = 0.1  # low pass of the velocity to compare with, in sampling frequencies
+_SLOWEST = 0.25  # largest sample period [s]: the duration of a block of errors
+_V_A_HIGHEST = 0.1  # highest low pass of the reference velocity, in sampling frequencies
 
 
 def _unusable(samples: Samples, needed: float) -> str:
-    """Why no part of a log is usable, and what to do. A part must last `needed` [s]."""
+    """Explains why no part of a log is usable; a part must last at least `needed` [s]."""
     if samples.T > _SLOWEST:
         return (
             f"samples {samples.T:g} s apart do not show the motion of a joint, expected at most "
@@ -79,8 +79,8 @@ def _unusable(samples: Samples, needed: float) -> str:
 def identify(log: Log, configuration: Configuration, torque_constant: bool = False) -> Identified:
     """Identifies the motor of a log.
 
-    With torque_constant it also identifies K_t: tau must be a current, and the torque of the sensor
-    is taken as exact.
+    With torque_constant, the torque constant K_t is identified too. In this case tau must be a
+    current, and the torque of the sensor is taken as exact.
 
     Raises LogError for a log and configuration that do not fit, or a log without a stretch that is
     long enough.
@@ -120,7 +120,7 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
             name: Quantity(math.nan, math.inf, each.unit, determined=False)
             for name, each in quantities.items()
         }
-    if quantities["B"].determined:  # until here it was that of the configuration
+    if quantities["B"].determined:  # the first bandwidth was computed with the configured B
         bandwidth = replace(noise, inertia=quantities["B"].value * abs(gamma)).bandwidth
     if torque_constant and (nominal := configuration.ports["tau"].torque_constant) is not None:
         quantities["torque_constant"] = motor.torque_constant(nominal)
@@ -161,7 +161,7 @@ def _notes(
     no_torque: bool,
     hidden: bool,
 ) -> Iterator[str]:
-    """Notes on what the log does not show, or contradicts; changed: time of a change [s]."""
+    """Yields notes on problems of the log; changed: time at which the stiffness changes [s]."""
     if changed is not None:
         yield _CHANGES.format(t=changed)
     if no_torque or hidden:
@@ -172,19 +172,19 @@ def _notes(
 
 
 def _set_points(pieces: Sequence[Signals], has_effect: bool) -> tuple[float, float]:
-    """Center of the set-points, and the largest distance from it; 0 is the center if they have no
-    effect."""
+    """Computes the center of the set-points, and the largest distance from the center. The center
+    is 0 if the set-points have no effect."""
     ends = [float(end(piece.set_point)) for piece in pieces for end in (np.min, np.max)]
     center = (min(ends) + max(ends)) / 2 if has_effect else 0.0
     return center, max(abs(end - center) for end in ends)
 
 
 def _apart(pieces: Sequence[Signals], count: float) -> int:
-    """Distance of the samples for the fit, in samples. It is 1 if the motor moves by at least one
-    count [rad] between two samples (RMS), else the number of samples for two counts.
+    """Returns the distance of the samples for the fit: 1 if the motor moves by at least one count
+    [rad] per sample (RMS), else the number of samples for two counts.
 
-    The errors of rounding must be independent from one sample to the next. Of a slower motor, the
-    samples between repeat the same error.
+    The rounding errors must be independent from one sample to the next. In slow motion, adjacent
+    samples have equal rounding errors.
     """
     moved = math.sqrt(np.mean(np.concatenate([np.diff(each.theta) for each in pieces]) ** 2))
     if moved >= count or moved == 0:
@@ -194,14 +194,14 @@ def _apart(pieces: Sequence[Signals], count: float) -> int:
 
 
 def _known_inertia(every: Mapping[str, Value], configuration: Configuration) -> KnownInertia | None:
-    """B of the configuration, unless its prior is the wide one of `init` or of an earlier run."""
+    """Returns the configured B, unless its prior is the wide prior for an unknown B."""
     std = float(every["prior.B"])
     given = "motor.B" in configuration.parameters
     return KnownInertia(float(every["motor.B"]), std) if given and 0 < std < WIDE else None
 
 
 def _center(zero: Quantity | None, pieces: Sequence[Signals]) -> float:
-    """The zero of the deformation, if it is surely not 0 and far enough to matter; else 0."""
+    """Returns the zero of the deformation if its distance from 0 is significant; else 0."""
     if zero is None or not zero.determined:
         return 0.0
     covered = max(float(np.ptp(piece.phi)) for piece in pieces)
@@ -210,7 +210,7 @@ def _center(zero: Quantity | None, pieces: Sequence[Signals]) -> float:
 
 
 def _check(configuration: Configuration, torque_constant: bool) -> None:
-    """Raises LogError if a port is missing, or if tau is not a current where it has to be one."""
+    """Raises LogError if a port is missing, or if tau must be a current and is not."""
     for name in ("theta", "q", "tau", *(["tau_e_sensor"] if torque_constant else [])):
         if name not in configuration.ports:
             why = "; a torque constant needs a measured torque" if "sensor" in name else ""
@@ -223,7 +223,7 @@ def _check(configuration: Configuration, torque_constant: bool) -> None:
 
 
 def _beginning(samples: Samples) -> Samples:
-    """As much of a log as is used."""
+    """Returns the first 600 s of a log, which are used for the identification."""
     if len(samples.values) * samples.T <= _LONGEST:
         return samples
     return replace(
@@ -236,7 +236,7 @@ def _beginning(samples: Samples) -> Samples:
 def _best_V_a(
     fmu: Fmu, samples: Samples, start: Mapping[str, Value], piece: Signals, f_0: float
 ) -> float:
-    """V_a whose velocity is nearest to the differentiated position, smoothed without phase."""
+    """Finds the V_a for which the filtered velocity is nearest to a zero-phase reference."""
     theta: Array = piece.theta[:_V_A_TICKS]
     wide = min(2.5 * f_0, _V_A_HIGHEST / samples.T)
     reference = np.gradient(low_pass(theta, wide, samples.T), samples.T)

@@ -1,4 +1,4 @@
-"""Motor data with their intervals, from several fits of the motor equation."""
+"""Computes motor data with 95 % intervals, from several fits of the motor equation."""
 
 import math
 from collections.abc import Sequence
@@ -13,33 +13,33 @@ from sigmahat.identification.spring import Spring
 from sigmahat.logs.log import Array
 
 _UNITS = {"B": "kg.m2", "D_theta": "N.m.s/rad", "tau_coulomb": "N.m"}
-_RELATIVE = 0.1  # largest half width of a determined value, over the value
-_NEGLIGIBLE = 0.005  # the same for Coulomb friction, over the torque: it may be zero
+_RELATIVE = 0.1  # largest half width of a determined value, relative to the value
+_NEGLIGIBLE = 0.005  # largest half width of the Coulomb friction, relative to the torque
 _POWERS = 4
-"""rls.n of every joint. FilteredRegression adds two more powers or knees if the data ask for them.
-With 6, the interval of the stiffness is a quarter wider, and with 3 it holds fewer curves."""
+"""Value of rls.n for every joint. FilteredRegression adds powers or knees if necessary. With 6, the
+interval of the stiffness is a quarter wider; with 3, the interval contains fewer true curves."""
 _SAMPLING = {"B": 0.015, "tau_coulomb": 0.015, "D_theta": 0.001}
-"""Relative error without any noise, at a period of 1 ms: reversals fall between samples."""
-_OF_COVERED = 0.05  # largest half width of a known zero, over the covered deformation
+"""Relative errors without noise, because reversals happen between samples of period 1 ms."""
+_OF_COVERED = 0.05  # largest half width of a known zero, relative to the range of the deformation
 _STRIBECK = tuple(
     Stribeck(v, delta) for v in (0.01, 0.02, 0.04, 0.08, 0.16, 0.32) for delta in (1.0, 2.0)
 )
-_ENDS = (0.0, -1.96, 1.96)  # value and ends of a known inertia, in standard deviations
-_FAR = 5.0  # standard deviations of a known B that no error of a data sheet exceeds
-_ANOTHER = 0.5  # relative error of B below which another scale of the torque is not likely
+_ENDS = (0.0, -1.96, 1.96)  # mean and interval ends of a known inertia, in standard deviations
+_FAR = 5.0  # largest plausible error of a known B, in standard deviations
+_ANOTHER = 0.5  # smallest relative error of B that suggests a wrong scale of the torque
 _N, _M = 4, 4  # highest orders of the polynomial that are tried
 
 
 @dataclass(frozen=True)
 class KnownInertia:
-    """What is known of B from the configuration."""
+    """The inertia B from the configuration, with its uncertainty."""
 
     value: float  # [kg.m2]
-    std: float  # standard deviation of its relative error, > 0
+    std: float  # standard deviation of the relative error of B, > 0
 
     def contradicts(self, found: Quantity) -> bool:
-        """Whether B is so far off that the scale of the torque may be wrong. A wrong torque
-        constant or gear ratio changes B and the stiffness by the same factor.
+        """Returns whether the error of B is so large that the scale of the torque may be wrong. A
+        wrong torque constant or gear ratio changes B and the stiffness by the same factor.
         """
         most = self.value * max(_FAR * self.std, _ANOTHER)
         return abs(found.value - self.value) - found.half_width > most
@@ -50,16 +50,16 @@ class MotorFit:
     """Fit of the motor equation to the stretches of a log."""
 
     quantities: dict[str, Quantity]
-    """B, D_theta and tau_coulomb, and the zero of the deformation where there is one."""
+    """B, D_theta and tau_coulomb, and the zero of the deformation if it exists."""
     gain: tuple[float, float]  # gain of a measured torque, half of its 95 % interval
     contradicted: bool
-    """Whether the B of the log contradicts the known B. Then B counts as not determined, and the
-    other quantities are identified with the known B."""
+    """Whether the B of the log contradicts the known B. In this case B counts as not determined,
+    and the other quantities are identified with the known B."""
     polynomial: Form  # orders and symmetry of the polynomial for the estimator
     spring: float  # largest torque of the spring in the log [N.m]
 
     def torque_constant(self, nominal: float) -> Quantity:
-        """K_t, if the pieces have the torque of a sensor and the current times a nominal K_t."""
+        """Computes K_t from the gain of the sensor torque relative to nominal K_t times current."""
         value, half_width = self.gain
         return _quantity(value * nominal, half_width * nominal, "N.m/A", 0.0)
 
@@ -72,13 +72,13 @@ def fit_motor(
     f_0: float,
     inertia: KnownInertia | None,
 ) -> MotorFit:
-    """Fits the motor equation with the orders of the polynomial that suit the pieces.
+    """Fits the motor equation, and chooses the orders of the polynomial.
 
     T        time between samples [s]
     gamma    gear ratio
     f_0      low pass of the equations [Hz]
-    inertia  what is known of B: if the pieces do not determine it, the other quantities are
-             identified with this value
+    inertia  known B: if the log does not determine B, the other quantities are identified with
+             the known value
     """
     longest = max(pieces, key=lambda piece: len(piece.theta))
     m_most = _M if np.ptp(longest.set_point) > 0 else 1
@@ -104,13 +104,13 @@ def fit_motor(
 def _with_spring(
     pieces: Sequence[Signals], T: float, gamma: float, form: Form, symmetric: bool
 ) -> tuple[Form, Form]:
-    """The form with the polynomial that predicts best what was left out, up to its orders.
+    """Chooses the polynomial with the best predictions in a cross-validation, up to given orders.
 
-    The form has only odd powers unless all powers are significantly better: in slow motion, a more
-    general spring leaves less information about friction.
+    The first form has only odd powers unless all powers are significantly better: in slow motion, a
+    more general spring leaves less information about friction.
 
-    The second form is the one for the estimator. That form has _POWERS powers, even if the log
-    shows little of them: with fewer powers, the interval would be too narrow.
+    The second form is for the estimator, and always has _POWERS powers. With fewer powers, the
+    interval of the stiffness would be too narrow.
     """
 
     def chosen(form: Form) -> tuple[Form, Array]:
@@ -126,10 +126,10 @@ def _with_spring(
 
 @dataclass(frozen=True)
 class Variants:
-    """The fit of the equations, and fits of others with different uncertain assumptions.
+    """A fit of the motor equation, and fits with other assumptions about filters and friction.
 
-    Where rounding matters, or friction is not of the form of the equation, the results differ by
-    more than chance.
+    The results differ by more than chance if rounding is relevant, or if the friction is of another
+    form.
     """
 
     first: Fit
@@ -138,7 +138,7 @@ class Variants:
 
 
 def _frictions(plain: Form) -> list[Form]:
-    """All other forms of friction than that of the plain equation."""
+    """Returns all forms of the equation with other models of friction."""
     load = replace(plain, load_friction=True)
     return [
         replace(plain, coulomb_velocity=regression.COULOMB_VELOCITY / 4),
@@ -155,18 +155,18 @@ def _with_all_columns(form: Form) -> Form:
 def _variants(
     pieces: Sequence[Signals], T: float, gamma: float, form: Form, inertia: KnownInertia | None
 ) -> tuple[Variants, Variants | None]:
-    """With the form of friction of the least errors, if the plain one is significantly worse.
+    """Fits the equation with all forms of friction, and chooses another form only if significant.
 
-    The torque may be late in all of them: where a hand moves the link, a delay looks like friction.
+    All fits include a delay of the torque, which looks like friction if a hand moves the link.
 
-    The second fits use the known B, if there is one.
+    The second result has the fits with the known B, if a known B exists.
     """
     sensor = pieces[0].tau_e is not None
     widest = _with_all_columns(form)
     whole, names = regression.equations(pieces, T, gamma, widest), set(widest.names(sensor))
 
     def fits_of(each: Form) -> list[Fit]:
-        """With B as unknown, then as known and at both ends of its interval."""
+        """Fits with an unknown B, then with the known B and with both ends of its interval."""
         if _with_all_columns(each) == widest:  # neither a filter nor v_s differs
             system = whole.without(names.difference(each.names(sensor)))
         else:
@@ -193,10 +193,10 @@ def _variants(
 
 
 def _half_width(name: str, fits: Variants) -> float:
-    """Half of the interval of the first fit, and the largest distance of the others.
+    """Adds half of the interval of the first fit and the largest distance of the other fits.
 
-    Another form of friction counts if it explains the log not significantly worse, and by the
-    distance that its own uncertainty does not explain.
+    A fit with another form of friction counts if its errors are not significantly larger. The
+    distance of such a fit is reduced by half of its interval.
     """
     first = fits.first
     if not math.isfinite(first.value.get(name, math.nan)):
@@ -218,16 +218,16 @@ def _motor_quantity(name: str, fits: Variants, torque: float) -> Quantity:
 
 
 def _quantity(value: float, half_width: float, unit: str, negligible: float) -> Quantity:
-    """negligible  half width below which any value is determined, be it zero"""
+    """negligible  half width below which any value counts as determined, even 0"""
     determined = value > -negligible and half_width <= max(_RELATIVE * value, negligible)
     return Quantity(value, half_width, unit, bool(determined))
 
 
 def _zero(spring: Spring, fits: Sequence[Fit], gamma: float) -> Quantity:
-    """The deformation at which spring and constant torque cancel.
+    """Computes the deformation at which spring and constant torque cancel.
 
-    It is determined if its interval is short compared with the covered deformation, and if the
-    stiffness is positive. A negative stiffness means a wrong sign or gear ratio.
+    The zero is determined if its interval is short compared with the range of the deformation, and
+    if the stiffness is positive. A negative stiffness means a wrong sign or gear ratio.
     """
     value, *others = (replace(spring, fit=each).zero() for each in (spring.fit, *fits))
     if not all(map(math.isfinite, [value, *others])):

@@ -1,4 +1,4 @@
-"""Noise of the signals of a log, and the filters that suit it."""
+"""Computes the noise of the signals of a log, and the low pass of the motor equation."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from sigmahat.fmi.instance import Value
 from sigmahat.logs.log import Array
 
 _WINDOWS = 40
-_ONLY_NOISE = 1.2  # ratio of a variance to that of the noise: for 1000 samples of noise, up to 1.1
+_ONLY_NOISE = 1.2  # largest ratio of signal variance to noise variance of a signal without motion
 _LOWEST = 5.0  # [Hz]
-_HIGHEST = 0.1  # of the sampling frequency
-SETTLED = 8.0  # periods of the low pass, after which it has forgotten a step to 1e-15
+_HIGHEST = 0.1  # highest bandwidth divided by the sampling frequency
+SETTLED = 8.0  # periods of the low pass after which a step response has decayed to 1e-15
 
 
 def variance(values: Array, resolution: float = 0.0) -> float:
-    """Variance of the white noise of a signal, in the square of its unit.
+    """Computes the variance of the white noise of a signal, in the squared unit of the signal.
 
     values      samples at even times, finite
-    resolution  step of the encoder, 0 if none: its rounding is noise of at least step^2/12
+    resolution  step of the encoder, or 0; rounding is noise with a variance of at least step^2/12
 
-    Fourth differences remove a motion that is slow compared with the sampling. For white noise
-    their variance is 70 times that of the signal. The median over windows ignores jumps.
+    Fourth differences remove a motion that is slow compared with the sampling. Fourth differences
+    of white noise have 70 times the variance of the noise. The median over windows ignores jumps.
     """
     windows = np.array_split(np.diff(values, 4), min(_WINDOWS, max(1, len(values) // 50)))
     found = float(np.median([np.mean(each**2) for each in windows])) / 70
@@ -33,12 +33,12 @@ def variance(values: Array, resolution: float = 0.0) -> float:
 
 
 def is_only_noise(values: Array) -> bool:
-    """Whether a signal is constant but for white noise, as the torque of a motor that is off."""
+    """Returns whether a signal is constant apart from white noise, as a torque without current."""
     return float(np.var(values)) <= _ONLY_NOISE * variance(values)
 
 
 def count(every: Mapping[str, Value], encoder: str = "theta") -> float:
-    """Angle of a count of an encoder [rad], from all parameters; 0 if there is no encoder."""
+    """Computes the angle of one encoder count [rad] from all parameters; 0 without an encoder."""
     counts = float(every[f"encoder.{encoder}"])
     return 2 * math.pi / counts if counts else 0.0
 
@@ -54,16 +54,16 @@ class TorqueNoise:
 
     @staticmethod
     def of(tau: Array, theta: Array, every: Mapping[str, Value], T: float) -> TorqueNoise:
-        """The noise of the signals of a motor; `every` are the parameters of the estimator."""
+        """Computes the noise of the signals of a motor; `every`: parameters of the estimator."""
         inertia = float(every["motor.B"]) * abs(float(every["motor.gamma"]))
         return TorqueNoise(variance(tau), variance(theta, count(every)), inertia, T)
 
     @property
     def bandwidth(self) -> float:
-        """Frequency at which a position twice differentiated is noisier than the torque [Hz].
+        """Frequency above which a twice differentiated position is noisier than the torque [Hz].
 
-        The sum of both noises is about white below this frequency. Above it, the weight 1/(1 +
-        (f/f_0)^4) attenuates the noise: the squared gain of a Butterworth filter of second order.
+        The sum of both noises is almost white below this frequency. At higher frequencies, the
+        weight 1/(1 + (f/f_0)^4) attenuates the noise, as a Butterworth filter of second order.
         """
         highest = _HIGHEST / self.T
         if self.position <= 0.0:
@@ -72,24 +72,24 @@ class TorqueNoise:
         return min(max(math.sqrt(math.sqrt(ratio)) / (2 * math.pi), _LOWEST), highest)
 
     def density(self, f: Array) -> Array:
-        """Power spectral density, one-sided [(N.m)2/Hz], at the frequencies f [Hz]."""
+        """Computes the one-sided power spectral density [(N.m)2/Hz] at the frequencies f [Hz]."""
         by_position = (self.inertia * (2 * math.pi * f) ** 2) ** 2 * self.position
         return 2 * self.T * (self.torque + by_position)
 
 
 def low_pass(values: Array, frequency: float, h: float) -> Array:
-    """Butterworth filter of second order, forward and backward, so without phase.
+    """Applies a Butterworth filter of second order forward and backward, without phase shift.
 
-    values     samples along the first axis, h [s] apart; beyond both ends they are continued by
-               their point reflection
-    frequency  at which the gain of one pass is 1/sqrt(2) [Hz], less than 1/(2 h)
+    values     samples along the first axis, h [s] apart; beyond both ends the samples are
+               continued by point reflection
+    frequency  cut-off frequency, with a gain of 1/sqrt(2) per pass [Hz], less than 1/(2 h)
 
-    The gain is that of the bilinear transform, as of scipy.signal, which takes a second to import.
+    The gain is equal to the filter of scipy.signal (bilinear), which takes a second to import.
     """
     settled = math.ceil(SETTLED / (frequency * h))
     ends = [(settled, settled), *[(0, 0)] * (values.ndim - 1)]
     padded = np.pad(values, ends, mode="reflect", reflect_type="odd")
-    # A product of small primes, else the transform is slow.
+    # The size is a product of small primes, for which the Fourier transform is fast.
     size = min(m << math.ceil(math.log2(len(padded) / m)) for m in (1, 3, 5, 9))
     spectrum = np.fft.rfft(padded, size, axis=0)
     relative = np.tan(np.pi * np.fft.rfftfreq(size)) / math.tan(math.pi * frequency * h)

@@ -1,4 +1,4 @@
-"""The result of an identification: its numbers, as text for people, and as values for JSON."""
+"""Defines the result of an identification, and converts the result to text and to JSON."""
 
 import math
 import warnings
@@ -9,17 +9,17 @@ from typing import Any
 from sigmahat.identification.regression import COULOMB_VELOCITY
 
 WIDE = 1.0
-"""Relative prior of motor data that the log does not determine. FilteredRegression would take a
-prior of 0, the start value of prior.B, as exact; with 1 it accepts up to 4 times the value."""
+"""Relative prior of motor data that the log does not determine. With a prior of 0, motor data count
+as exact in FilteredRegression; with 1, values up to 4 times the given value are accepted."""
 
 
 @dataclass(frozen=True)
 class Quantity:
     """One identified parameter with its 95 % interval, value +- half_width."""
 
-    value: float  #: In its unit.
+    value: float  #: Value of the parameter, in `unit`.
     half_width: float
-    """Half the width of the interval, in the same unit; inf if the motion does not show it."""
+    """Half the width of the interval, in `unit`; inf if the motion does not determine the value."""
     unit: str
     """kg.m2 for B, N.m.s/rad for D_theta, N.m for tau_coulomb, rad for zero, N.m/A for
     torque_constant."""
@@ -44,34 +44,34 @@ class Identified:
     """Motor data, polynomial orders and noise, identified from a log."""
 
     quantities: Mapping[str, Quantity]
-    """B, D_theta, tau_coulomb, zero of the deformation, and torque_constant if it was asked for."""
-    symmetric: bool  #: For rls.symmetric.
-    n: int  #: For rls.n.
-    m: int  #: For rls.m: the order whose error, in a cross-validation, is the least.
+    """Identified parameters by name: B, D_theta, tau_coulomb, zero, and maybe torque_constant."""
+    symmetric: bool  #: Value for rls.symmetric.
+    n: int  #: Value for rls.n.
+    m: int  #: Value for rls.m, with the least error in a cross-validation.
     tau_variance: float  #: Variance of the noise of the torque [(N.m)2].
     theta_variance: float  #: Variance of the noise of the motor position, rounding included [rad2].
     bandwidth: float
-    """Bandwidth of a filter that balances both noises, or up to which the deformation is coherent
-    with the torque, if that is lower [rad/s]."""
-    coherent: float  #: Frequency above which the deformation is noise [Hz]; inf if there is none.
-    V_a: float  #: For filter.V_a [rad2/s4].
+    """Bandwidth of a filter that balances the noise of torque and position; at most the frequency
+    up to which deformation and torque are coherent [rad/s]."""
+    coherent: float  #: Frequency above which the deformation is noise [Hz]; inf without noise.
+    V_a: float  #: Value for filter.V_a [rad2/s4].
     phi: float  #: Largest magnitude of the deformation, from its zero [rad].
     zero: float
-    """Deformation at which the spring has no torque [rad], where it is surely not 0; else 0."""
+    """Deformation at which the spring has no torque [rad]; 0 if the difference is insignificant."""
     knees: tuple[float, ...]
-    """Up to two deformations at which the slope of the spring changes at once [rad]."""
+    """Up to two deformations at which the slope of the spring torque changes suddenly [rad]."""
     set_point: float  #: Largest distance of the set-point from its center [1].
     set_point_center: float  #: Middle of the set-points; 0 if the torque does not depend on it [1].
-    set_point_moves: bool  #: Whether it differs in the log; else m is 1, whatever the joint is.
+    set_point_moves: bool  #: Whether the set-point changes in the log; otherwise m is 1.
     torque: float
     """Largest magnitude of the torque of the motor after its gear, or of the spring [N.m]."""
-    B: float  #: That of the configuration [kg.m2].
-    D_theta: float  #: That of the configuration [N.m.s/rad].
-    notes: Sequence[str]  #: What had to be done to the samples of the log, in sentences.
+    B: float  #: Motor inertia of the configuration [kg.m2].
+    D_theta: float  #: Viscous friction of the configuration [N.m.s/rad].
+    notes: Sequence[str]  #: Sentences about the processing of the samples of the log.
 
 
 def as_dict(identified: Identified) -> dict[str, Any]:
-    """For JSON; units are in the names, or beside the value. Some values may be infinite."""
+    """Returns the result as a dictionary for JSON, with units in the keys."""
     return {
         **{
             name: {
@@ -100,7 +100,7 @@ def as_dict(identified: Identified) -> dict[str, Any]:
 
 
 def summary(identified: Identified) -> str:
-    """One screen."""
+    """Formats the result of an identification as text that fits on one screen."""
     lines = [f"  {note}" for note in identified.notes]
     lines.append("")
     lines += [f"{name:16}{_text(each)}" for name, each in identified.quantities.items()]

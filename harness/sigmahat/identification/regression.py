@@ -1,21 +1,21 @@
 """Regression of the motor equation with instrumental variables against the noise of encoders.
 
-The motor (3) with Coulomb friction, on its axis, with the flexibility torque as a polynomial (16)
-whose coefficients are unknown as well:
+The equation of the motor (3) with Coulomb friction, on the motor axis, with the flexibility torque
+tau_e as a polynomial (16) with unknown coefficients, is linear in all unknowns:
 
     tau = B gamma theta'' + D_theta gamma theta' + tau_coulomb tanh(theta'/v_s) - tau_e/gamma + c
 
-is linear in all unknowns. The constant c is a torque that does not change, and the torque of the
-spring at a wrong zero of the deformation.
+The constant c is the sum of a constant torque, and of the spring torque from a wrong zero of the
+deformation.
 
 Least squares would be biased: theta'' of a rounded position is mostly noise, and noise in a
 regressor makes its coefficient too small. Therefore even and odd samples are filtered and
-differentiated separately. Their rounding errors are independent while the joint moves. The
-regressors of each half are the instruments of the other half, so the sums Z'X contain no squared
-noise.
+differentiated separately. The rounding errors of even and odd samples are independent while the
+joint moves. The regressors of each half are the instruments of the other half, so the sums Z'X
+contain no squared noise.
 
-The equations are kept as sums over blocks of time, never row by row. So the memory does not grow
-with the number of samples, and a fit takes much less time than the filters.
+The equations are stored as sums over blocks of time, never row by row. Therefore the memory does
+not grow with the number of samples, and a fit takes much less time than the filters.
 """
 
 from __future__ import annotations
@@ -36,19 +36,19 @@ from sigmahat.logs.log import Array
 from sigmahat.logs.sampling import Samples, stretches
 
 MOTOR = ("B", "D_theta", "tau_coulomb")  # first columns, which describe the motor
-COULOMB_VELOCITY = 0.02  # v_s, over which the friction changes its sign [rad/s]
+COULOMB_VELOCITY = 0.02  # v_s, width of the sign change of the friction [rad/s]
 WIDEST = 0.1  # highest low pass of the velocity, in sampling frequencies
 CONSTANT = "constant"  # name of the column of c
-_BLOCK = 0.25  # [s]; errors further apart are taken as independent
-_WINDOW = 1 << 14  # rows that are filtered at a time, about
-_EDGE = 0.1  # [s] left out at both ends of a piece, where the filter has not settled
-_PARTS = 8  # number of parts of a log; each is predicted from the others
-_LEAST = 40  # samples of a stretch: filters need some
+_BLOCK = 0.25  # duration of a block; errors in different blocks count as independent [s]
+_WINDOW = 1 << 14  # approximate number of rows that are filtered at a time
+_EDGE = 0.1  # duration left out at both ends of a stretch, where the filter has not settled [s]
+_PARTS = 8  # number of parts of a log for the cross-validation
+_LEAST = 40  # least number of samples of a stretch for the filters
 
 
 @dataclass(frozen=True)
 class Signals:
-    """A piece of a log without gaps; arrays of one size, T apart."""
+    """Signals in a stretch of a log without gaps; arrays of one size, samples T apart."""
 
     theta: Array
     phi: Array
@@ -57,17 +57,17 @@ class Signals:
     tau_e: Array | None  # torque of the sensor, to identify the torque constant
     held: bool = False  # whether a drive holds tau until the next sample
     extra: Array | None = None
-    """More regressors, [size: samples x columns]. They are filtered as the torque is, and are their
-    own instruments."""
+    """More regressors, [size: samples x columns]. These regressors are filtered like the torque,
+    and are also used as instruments."""
 
     def __getitem__(self, kept: slice) -> Signals:
-        """Some of the samples."""
+        """Selects samples of all signals."""
         signals = {each.name: getattr(self, each.name) for each in fields(self)}
         arrays = {name: x[kept] for name, x in signals.items() if isinstance(x, np.ndarray)}
         return replace(self, **arrays, held=self.held)
 
     def with_acting_torque(self) -> Signals:
-        """With the mean of the torque before and behind each sample, if it is held."""
+        """Replaces a held torque by the mean of the torques before and after each sample."""
         if not self.held:
             return self
         before = np.append(self.tau[:1], self.tau[:-1])
@@ -84,7 +84,7 @@ class Stribeck(NamedTuple):
 
 @dataclass(frozen=True)
 class Form:
-    """What the equations contain, and the filters."""
+    """Form of the equations: orders of the polynomial, model of the friction, and filters."""
 
     f_0: float  # low pass of both sides [Hz]
     wide: float  # low pass of the velocity in the Coulomb friction [Hz]
@@ -95,15 +95,15 @@ class Form:
     load_friction: bool = False
     """Whether there is friction that is proportional to the magnitude of the deformation."""
     stribeck: tuple[Stribeck, ...] = ()  # additional friction in slow motion
-    delay: bool = False  # whether the torque may be late: tau(t - delay) = tau(t) - delay tau'(t)
+    delay: bool = False  # whether a delay is estimated: tau(t - delay) = tau(t) - delay tau'(t)
 
     def with_all_powers(self) -> Form:
-        """The form with even powers of the deformation as well, up to about the same power."""
+        """Returns the form with odd and even powers of the deformation, up to a similar power."""
         return replace(self, n=2 * self.n, symmetric=False)
 
     def names(self, sensor: bool) -> list[str]:
-        """Names of the columns. With a torque sensor the polynomial is replaced by a gain."""
-        has_constant = sensor or self.symmetric  # else the polynomial has the constant
+        """Returns names of the regressors; with a torque sensor a gain replaces the polynomial."""
+        has_constant = sensor or self.symmetric  # otherwise the polynomial contains the constant
         return [
             *MOTOR,
             *(["load"] if self.load_friction else []),
@@ -116,46 +116,46 @@ class Form:
 
 @dataclass(frozen=True)
 class Equations:
-    """y = X p + error, with instruments Z; both halves of all pieces, summed over blocks."""
+    """Equations y = X p + error with instruments Z, for all samples, as sums over blocks."""
 
     ZX: Array  # Z'X of each block, [size: blocks x columns x columns]
     Zy: Array  # Z'y of each block, [size: blocks x columns]
     R: Array
-    """A factor of the squares of each block, R'R = [X y]'[X y], [size: blocks x any x columns + 1].
-    So |y - X p| = |R [-p, 1]| without a difference of large numbers."""
+    """QR factor of each block, R'R = [X y]'[X y], [size: blocks x any x columns + 1]. Therefore
+    |y - X p| = |R [-p, 1]|, which avoids a difference of large numbers."""
     rows: NDArray[np.int64]  # number of equations in each block
-    names: Sequence[str]  # names of the columns, see Form.names
+    names: Sequence[str]  # names of the regressors, see Form.names
     units: tuple[float, float]  # divisors of deformation and set-point [rad, 1]
 
     @property
     def scale(self) -> Array:
-        """RMS of each column."""
+        """RMS of each regressor."""
         squares: Array = np.sqrt(np.sum(self.R[:, :, :-1] ** 2, axis=(0, 1)) / self.rows.sum())
         return squares
 
     def errors(self, p: Array) -> Array:
-        """Sum of the squared errors of each block with the coefficients p."""
+        """Computes the sum of squared errors of each block with the coefficients p."""
         squares: Array = np.sum((self.R @ np.append(-p, 1.0)) ** 2, axis=1)
         return squares
 
     def only(self, names: Sequence[str]) -> Equations:
-        """The same equations with some of the columns."""
+        """Returns the same equations with the named regressors only."""
         kept = np.array([self.names.index(name) for name in names])
         ZX, Zy = self.ZX[:, kept[:, None], kept], self.Zy[:, kept]
         return replace(self, ZX=ZX, Zy=Zy, R=self.R[:, :, [*kept, -1]], names=list(names))
 
     def without(self, names: Collection[str]) -> Equations:
-        """The same equations without some of the columns."""
+        """Returns the same equations without the named regressors."""
         return self.only([name for name in self.names if name not in names])
 
     def known(self, name: str, value: float) -> Equations:
-        """The same equations without a column whose coefficient is known."""
+        """Returns the same equations with a known coefficient of one regressor."""
         i, R = self.names.index(name), self.R.copy()
         R[:, :, -1] -= value * R[:, :, i]
         return replace(self, Zy=self.Zy - value * self.ZX[:, :, i], R=R).without([name])
 
     def parts(self, number: int) -> list[Equations]:
-        """The same equations, divided into parts of equal duration."""
+        """Divides the equations into parts of equal duration."""
         ends = -(-np.arange(number + 1) * len(self.rows) // number)  # rounded up
         return [
             replace(self, ZX=self.ZX[i:k], Zy=self.Zy[i:k], R=self.R[i:k], rows=self.rows[i:k])
@@ -163,7 +163,7 @@ class Equations:
         ]
 
     def in_parts(self, parts: int) -> Equations:
-        """The same equations in fewer, longer blocks."""
+        """Combines the blocks of the equations to fewer, longer blocks."""
         every = [each for each in self.parts(parts) if len(each.rows)]
         columns = self.R.shape[2]
         return replace(
@@ -176,7 +176,7 @@ class Equations:
 
 
 def factor(X: Array) -> Array:
-    """R of X = QR, or of a stack of such, with as many rows as columns."""
+    """Computes the square factor R of X = QR, for one matrix X or for a stack of matrices."""
     missing = max(0, X.shape[-1] - X.shape[-2])
     if missing:
         X = np.pad(X, [*[(0, 0)] * (X.ndim - 2), (0, missing), (0, 0)])
@@ -184,7 +184,7 @@ def factor(X: Array) -> Array:
 
 
 def equations(pieces: Sequence[Signals], T: float, gamma: float, form: Form) -> Equations:
-    """The equations of all pieces, with samples T [s] apart, weighted by the low pass."""
+    """Computes the equations of all stretches, with samples T [s] apart, after the low pass."""
     of_polynomial = units(pieces)
     parts = []
     for piece in pieces:
@@ -202,20 +202,20 @@ def equations(pieces: Sequence[Signals], T: float, gamma: float, form: Form) -> 
 
 @dataclass(frozen=True)
 class Rows:
-    """Some of the equations of a piece, for even and odd samples."""
+    """Some of the equations of a stretch, for even and odd samples."""
 
     y: Array  # [size: 2 x rows]
     X: Array  # [size: 2 x rows x columns]
-    Z: Array  # the same
-    place: NDArray[np.intp]  # places of the rows in the piece, without a gap
+    Z: Array  # instruments [size: 2 x rows x columns]
+    place: NDArray[np.intp]  # indices of the rows in the stretch, without a gap
 
 
 def rows(
     piece: Signals, T: float, gamma: float, form: Form, units: tuple[float, float]
 ) -> Iterator[Rows]:
-    """The equations of a piece, whole blocks at a time; units as in Equations.
+    """Yields the equations of a stretch, whole blocks at a time; units as in Equations.
 
-    Around them as much of the piece is filtered as the filters remember.
+    Samples around the blocks are filtered too, so that the filters have settled in the blocks.
     """
     count, long = len(piece.theta) // 2, _block(T)
     edge = round(_EDGE / (2 * T))
@@ -233,7 +233,7 @@ def rows(
         ]
         y, X = (np.stack(each) for each in zip(*halves, strict=True))
         Z = np.empty_like(X)
-        Z[0, 1:], Z[0, 0] = (X[1, 1:] + X[1, :-1]) / 2, X[1, 0]  # at the times of half 0
+        Z[0, 1:], Z[0, 0] = (X[1, 1:] + X[1, :-1]) / 2, X[1, 0]  # at the times of even samples
         Z[1, :-1], Z[1, -1] = (X[0, 1:] + X[0, :-1]) / 2, X[0, -1]
         if piece.extra is not None:
             own = X.shape[2] - piece.extra.shape[1]
@@ -244,14 +244,14 @@ def rows(
 
 
 def _block(T: float) -> int:
-    """Rows of each half in a block."""
+    """Returns the number of even samples in a block."""
     return round(_BLOCK / (2 * T))
 
 
 def _in_blocks(values: Array, place: NDArray[np.intp], T: float) -> Array:
-    """Rows by blocks, with zeros where a block has fewer.
+    """Arranges rows by blocks; an incomplete block is filled with zeros.
 
-    values  [size: 2 x rows x columns], at these places in a piece
+    values  [size: 2 x rows x columns], at the indices `place` in a stretch
 
     Returns an array [size: blocks x rows of a block x columns].
     """
@@ -264,28 +264,28 @@ def _in_blocks(values: Array, place: NDArray[np.intp], T: float) -> Array:
 
 
 def eta(n: int, m: int) -> list[str]:
-    """Names of the columns of a polynomial of orders n and m."""
+    """Returns the names of the regressors of a polynomial of orders n and m."""
     return [f"eta[{i},{j}]" for i in range(n) for j in range(m)]
 
 
 def extra(i: int) -> str:
-    """Name of column i of Signals.extra."""
+    """Returns the name of column i of Signals.extra."""
     return f"extra[{i}]"
 
 
 def shortest(T: float) -> int:
-    """Least number of samples of a piece."""
+    """Returns the least number of samples of a stretch."""
     return max(round((2 * _EDGE + 2 * _BLOCK) / T), _LEAST)
 
 
 def signals_of(
     samples: Samples, every: Mapping[str, Value], torque: str = "tau", sensor: bool = False
 ) -> Iterator[Signals]:
-    """Stretches of a log without a gap that are long enough; none without q and the torque.
+    """Yields the stretches of a log without a gap, if long enough; none without q and torque.
 
     every   parameters of the estimator
-    torque  port of the torque; tau_e_sensor over the gear ratio takes the place of -tau
-    sensor  whether the torque of the sensor is kept beside that of the motor
+    torque  port of the torque; tau_e_sensor divided by the gear ratio replaces -tau
+    sensor  whether the sensor torque is kept in addition to the motor torque
     """
     columns = dict(zip(samples.names, samples.values.T, strict=True))
     if not {"q", torque} <= columns.keys():
@@ -317,10 +317,10 @@ def _half(
     form: Form,
     units: tuple[float, float],
 ) -> tuple[Array, Array]:
-    """Response and regressors of samples h [s] apart.
+    """Computes response and regressors of samples h [s] apart.
 
-    velocity  of theta [rad/s]
-    friction  its direction, from _direction()
+    velocity  velocity of theta [rad/s]
+    friction  direction of the Coulomb friction, from _direction()
     """
     sensor, speed = s.tau_e is not None, np.abs(velocity)
     raw = [s.tau if s.tau_e is None else s.tau_e / gamma, friction]
@@ -348,14 +348,14 @@ def _half(
 
 
 def _direction(velocity: Array, v_s: float) -> Array:
-    """Mean of tanh(theta'/v_s) around each sample, for a velocity that is linear in between.
+    """Computes the mean of tanh(theta'/v_s) around each sample, with a piecewise linear velocity.
 
-    A fast reversal happens between two samples: with the value at one of them its time would be
-    wrong by up to half a period. For the same reason the velocity is that at all samples here.
+    A fast reversal happens between two samples. The mean avoids an error of the reversal time of up
+    to half a period. For the same reason this velocity is given at all samples.
     """
     x = velocity / v_s
     middle = np.concatenate([x[:1], (x[1:] + x[:-1]) / 2, x[-1:]])
-    integral = np.logaddexp(middle, -middle)  # of tanh
+    integral = np.logaddexp(middle, -middle)  # integral of tanh
     step = np.diff(middle)
     flat = np.abs(step) < 1e-3
     mean: Array = np.where(flat, np.tanh(x), np.diff(integral) / np.where(flat, 1.0, step))
@@ -365,9 +365,9 @@ def _direction(velocity: Array, v_s: float) -> Array:
 
 
 def units(pieces: Sequence[Signals]) -> tuple[float, float]:
-    """Divisors of deformation and set-point in the polynomial [rad, 1].
+    """Returns the divisors of deformation and set-point in the polynomial [rad, 1].
 
-    The divisors are the largest magnitudes in all pieces, so that powers are of order 1.
+    The divisors are the largest magnitudes in all stretches, so that powers are of order 1.
     """
     phi = max(float(np.max(np.abs(piece.phi))) for piece in pieces)
     set_point = max(float(np.max(np.abs(piece.set_point))) for piece in pieces)
@@ -379,43 +379,43 @@ def set_point_moves(pieces: Sequence[Signals]) -> bool:
 
 
 def _first(x: Array, h: float) -> Array:
-    """First derivative, of fourth order in h; the two values at each end are not valid."""
+    """Computes the first derivative, of fourth order in h; two values at each end are invalid."""
     r = np.roll
     return (r(x, 2) - 8 * r(x, 1) + 8 * r(x, -1) - r(x, -2)) / (12 * h)
 
 
 def _second(x: Array, h: float) -> Array:
-    """Second derivative, as _first."""
+    """Computes the second derivative, of fourth order in h; two values at each end are invalid."""
     r = np.roll
     return (-r(x, 2) + 16 * r(x, 1) - 30 * x + 16 * r(x, -1) - r(x, -2)) / (12 * h**2)
 
 
 @dataclass(frozen=True)
 class Fit:
-    """Coefficients, and how certain they are; nan and inf where the data do not determine them."""
+    """Coefficients and their covariance; nan and inf if the data do not determine them."""
 
     value: dict[str, float]
-    covariance: Array  # [size: coefficients, coefficients], in their order
-    quantile: float  # half a 95 % interval over the standard deviation
+    covariance: Array  # covariance in the order of value, [size: coefficients, coefficients]
+    quantile: float  # half a 95 % interval divided by the standard deviation
     squares: Array  # sum of the squared errors of each block, [size: blocks]
 
     @property
     def half_width(self) -> dict[str, float]:
-        """Half of the 95 % intervals."""
+        """Half widths of the 95 % intervals of the coefficients, by name."""
         std = np.sqrt(np.diag(self.covariance))
         return dict(zip(self.value, (self.quantile * std).tolist(), strict=True))
 
     @property
     def error(self) -> float:
-        """Sum of the squared errors; nan if nothing is determined."""
+        """Sum of the squared errors; nan if the data determine no coefficient."""
         return float(np.sum(self.squares))
 
 
 def fit(e: Equations) -> Fit:
-    """Solves Z'X p = Z'y for both halves together.
+    """Solves Z'X p = Z'y for even and odd samples together.
 
-    The covariance is that of the sums of Z times error over blocks of time. So the intervals also
-    hold for coloured errors, and where the polynomial does not fit exactly.
+    The covariance is computed from sums of Z times error over blocks of time. Therefore the
+    intervals also hold for coloured errors, and for a polynomial that does not fit exactly.
     """
     scale = e.scale
     if not np.all(scale > 0):
@@ -440,12 +440,12 @@ def fit(e: Equations) -> Fit:
 
 
 def is_worse(one: Fit, other: Fit) -> bool:
-    """Whether the squared errors of one fit are significantly larger than those of the other."""
+    """Returns whether the squared errors of `one` are significantly larger than of `other`."""
     return is_more(one.squares - other.squares)
 
 
 def is_more(differences: Array) -> bool:
-    """Whether the mean of independent differences is significantly above 0."""
+    """Returns whether the mean of independent differences is significantly above 0."""
     error = np.std(differences, ddof=1) / math.sqrt(len(differences))
     return bool(np.mean(differences) > 2 * error)
 
@@ -457,7 +457,7 @@ def _nothing(e: Equations) -> Fit:
 
 
 def left_out(e: Equations) -> Array:
-    """Mean square error of each block after a fit to all others, [size: blocks]."""
+    """Computes the mean square error of each block after a fit to all others, [size: blocks]."""
     scale = e.scale
     scale[scale == 0] = 1.0
     A, b = e.ZX / np.outer(scale, scale), e.Zy / scale
@@ -467,8 +467,8 @@ def left_out(e: Equations) -> Array:
 
 
 def choose(system: Equations, form: Form) -> tuple[Form, Array]:
-    """The form with the orders, up to its own, that have the least error in a cross-validation over
-    eighths of the log, and these errors, see left_out; system has the equations of the form.
+    """Chooses the orders with the least error in a cross-validation over eighths of the log, up to
+    the orders of the form. Returns form and errors from left_out(); system: equations of the form.
     """
     system = system.in_parts(_PARTS)
     others = [name for name in system.names if name not in eta(form.n, form.m)]

@@ -1,4 +1,4 @@
-"""The spring in a fit of the motor equation: the zero and the largest torque of its polynomial.
+"""Analyses the spring in a fit of the motor equation: zero and largest torque of the polynomial.
 
 The module also finds springs that are no polynomial: a spring that changes during the log, and a
 spring with a sudden change of slope, as in harmonic drives.
@@ -17,12 +17,12 @@ from sigmahat.identification.regression import CONSTANT, WIDEST, Equations, Fit,
 from sigmahat.joint.sheet import powers_of_phi
 from sigmahat.logs.log import Array
 
-_USUAL = (0.005, 0.995)  # quantiles of the deformation, between which the polynomial is known
+_USUAL = (0.005, 0.995)  # quantiles of the deformation between which the polynomial is valid
 
 
 @dataclass(frozen=True)
 class Spring:
-    """Torque of the motor that balances the spring, as the polynomial in a fit to some pieces."""
+    """Motor torque that balances the spring: the polynomial in a fit to stretches of a log."""
 
     form: Form
     fit: Fit
@@ -30,18 +30,18 @@ class Spring:
 
     @cached_property
     def units(self) -> tuple[float, float]:
-        """As in Equations."""
+        """Divisors of deformation and set-point in the polynomial [rad, 1], as in Equations."""
         return regression.units(self.pieces)
 
     @property
     def covered(self) -> float:
-        """Range of the deformation in the pieces [rad]."""
+        """Range of the deformation in the log [rad]."""
         return float(np.ptp(np.concatenate([each.phi for each in self.pieces])))
 
     def zero(self) -> float:
-        """Deformation at which spring and constant torque cancel [rad]; nan if there is none.
+        """Computes the deformation at which spring and constant torque cancel [rad], else nan.
 
-        It is the one nearest to the middle of the covered deformation, at the mean set-point.
+        Of several zeros, the nearest to the mean deformation is returned, at the mean set-point.
         """
         polynomial = np.zeros(self._exponents[-1] + 1)
         polynomial[self._exponents] = self._coefficients
@@ -56,7 +56,7 @@ class Spring:
         return float(real[np.argmin(np.abs(real - middle))]) * self.units[0]
 
     def half_width(self, zero: float) -> float:
-        """Half of the 95 % interval of the zero [rad], to first order in the coefficients."""
+        """Computes half of the 95 % interval of the zero [rad], by linear error propagation."""
         x = zero / self.units[0]
         by_eta = np.outer(x**self._exponents, self._of_set_point(self._set_point)).ravel()
         names = list(self.fit.value)
@@ -71,16 +71,16 @@ class Spring:
         return self.fit.quantile * math.sqrt(variance) / abs(slope)
 
     def slope(self, phi: float) -> float:
-        """Slope of the motor torque over the deformation at the mean set-point [N.m/rad]: the
-        stiffness over the gear ratio, with the other sign."""
+        """Computes the derivative of the motor torque with respect to the deformation [N.m/rad], at
+        the mean set-point: the negative stiffness divided by the gear ratio."""
         e, x = self._exponents, phi / self.units[0]
         return float(np.sum(e * x ** np.maximum(e - 1, 0) * self._coefficients)) / self.units[0]
 
     def largest(self, gamma: float) -> float:
-        """Largest torque of the spring in the log, behind the gear [N.m]; nan if not known.
+        """Computes the largest spring torque in the log at the gear output [N.m], nan if unknown.
 
-        A rare deformation, such as a blow, may be beyond what the polynomial was fitted to. There
-        the torque is taken as proportional to the deformation.
+        A rare deformation, as by an impact, may be outside of the range of the fit. For such a
+        deformation the torque is assumed to be proportional to the deformation.
         """
         if "gain" in self.fit.value:
             return math.nan
@@ -104,39 +104,39 @@ class Spring:
         return float(np.mean(np.concatenate([piece.set_point for piece in self.pieces])))
 
     def _of_set_point(self, set_point: Array | float) -> Array:
-        """Powers of the set-point, the last axis of size m."""
+        """Computes the powers of the set-point; the last axis has the size m."""
         return (np.asarray(set_point) / self.units[1])[..., None] ** np.arange(self.form.m)
 
     @property
     def _eta(self) -> Array:
-        """[size: n, m]"""
+        """Coefficients of the polynomial [size: n, m]."""
         n, m = self.form.n, self.form.m
         return np.array([[self.fit.value[f"eta[{i},{j}]"] for j in range(m)] for i in range(n)])
 
     @property
     def _coefficients(self) -> Array:
-        """Of the powers of the deformation at the mean set-point, [size: n]."""
+        """Coefficients of the powers of the deformation at the mean set-point, [size: n]."""
         return self._eta @ self._of_set_point(self._set_point)
 
 
-_PLACES = 16  # steps in which the time is looked for, then in smaller ones around the best
+_PLACES = 16  # factor by which the step of the search for the time of a change is refined
 _EXPLAINED = 0.3
-"""Largest squared error of two springs, over that of one. After a change by a fifth, this ratio is
-0.04. Without a change, it was 0.6 or more on 38 logs with hysteresis, backlash and friction."""
+"""Largest ratio of the squared errors with two springs and with one. After a change by a fifth, the
+ratio is 0.04. Without a change, the ratio was 0.6 or more on 38 logs with unmodelled effects."""
 _ORDER = 4  # powers of the torque of each of the two springs
 
 
 def plain_equations(pieces: Sequence[Signals], T: float, gamma: float, f_0: float) -> Equations:
-    """The equations of one spring with even and odd powers, no set-point; others as fit_motor()."""
+    """Computes equations with one spring of all powers, without set-point, else as fit_motor()."""
     form = Form(f_0, min(2.5 * f_0, WIDEST / T), n=_ORDER, symmetric=False)
     return regression.equations(pieces, T, gamma, form)
 
 
 def change_of_spring(system: Equations, pieces: Sequence[Signals]) -> int | None:
-    """The sample from which on another spring explains the log far better; None if none does, or
-    if the log has a set-point. With one spring, such a change looks like inertia and friction.
+    """Finds the sample after which another spring explains the log far better; None without such a
+    sample, or with a set-point. With one spring, a change would falsify inertia and friction.
 
-    Samples are counted over all pieces, of which these are the plain equations.
+    Samples are counted over all stretches. The argument system is from plain_equations().
     """
     if regression.set_point_moves(pieces):
         return None
@@ -145,7 +145,7 @@ def change_of_spring(system: Equations, pieces: Sequence[Signals]) -> int | None
     spring = [system.names.index(name) for name in regression.eta(_ORDER, 1)]
 
     def error(place: int) -> float:
-        """Sum of the squared errors with another spring from this block on."""
+        """Computes the sum of squared errors with another spring from the block `place` on."""
         before, later = (
             regression.factor(each.reshape(-1, R.shape[2])) for each in (R[:place], R[place:])
         )
@@ -166,7 +166,7 @@ def change_of_spring(system: Equations, pieces: Sequence[Signals]) -> int | None
 
 
 def with_two_springs(pieces: Sequence[Signals], first: int) -> list[Signals]:
-    """Pieces with regressors for what the spring has in addition from this sample on."""
+    """Adds regressors for a change of the spring torque, which are 0 before the sample `first`."""
     unit, begin, found = regression.units(pieces)[0], 0, []
     for piece in pieces:
         later = np.arange(begin, begin + len(piece.phi)) >= first
@@ -176,23 +176,23 @@ def with_two_springs(pieces: Sequence[Signals], first: int) -> list[Signals]:
     return found
 
 
-_SHARES = np.linspace(0.1, 0.9, 17)  # compared places, over the usual deformation
-_NOT_RARE = 0.995  # quantile of the deformation that is not rare
-_FINER = np.linspace(-0.04, 0.04, 9)  # offsets from the best places, for nearby places
-_KNEES_APART = 0.1  # least distance of two knees
-_LEAST_CHANGE = 0.25  # least change of slope at a knee, over the other knee
-_MOST = 100_000  # samples that are used
+_SHARES = np.linspace(0.1, 0.9, 17)  # tried places of a knee, divided by the usual deformation
+_NOT_RARE = 0.995  # quantile that defines the usual deformation
+_FINER = np.linspace(-0.04, 0.04, 9)  # offsets of further tried places from the best place
+_KNEES_APART = 0.1  # least distance of two knees, divided by the usual deformation
+_LEAST_CHANGE = 0.25  # least ratio of the changes of slope at two knees
+_MOST = 100_000  # largest number of samples that are used to find knees
 
 
 def knees(
     pieces: Sequence[Signals], T: float, gamma: float, form: Form, zero: float
 ) -> tuple[float, ...]:
-    """Places of up to two knees, from the zero [rad], in increasing order.
+    """Finds up to two knees of the spring [rad from the zero], in increasing order.
 
-    The equation of the motor gets a column max(|phi| - k, 0) sign(phi) for each knee k. The
-    equation is linear in its coefficients. So the columns of many places are filtered once, and the
-    equations are solved for every place and pair of places. Beside them they have the polynomial,
-    and the friction by load of the estimator: without this friction, the places are less exact.
+    The motor equation gets a regressor max(|phi| - k, 0) sign(phi) for each knee k. The equation
+    is linear in the coefficients. Therefore regressors of many places are filtered only once, and
+    the equations are solved for each place and each pair of places. The equation also has the
+    polynomial and the load friction of the estimator, which make the places more exact.
 
     T      time between samples [s]
     gamma  gear ratio
@@ -216,7 +216,7 @@ def knees(
         shares = np.unique(np.add.outer(near, _FINER))
         better, other = _least(beyond(shares), shares, number)
         changes = [abs(x) for name, x in other.value.items() if name.startswith("extra")]
-        # The smaller one of two changes may only correct the place of the other.
+        # A second knee with a small change may only correct the place of the first knee.
         if not regression.is_worse(found, other) or min(changes) < _LEAST_CHANGE * max(changes):
             break
         best, found = better, other
@@ -224,7 +224,7 @@ def knees(
 
 
 def _least(e: Equations, shares: Array, number: int) -> tuple[Array, Fit]:
-    """So many of the shares with the least error, and the fit with their columns alone."""
+    """Finds the given number of knees with the least error; returns their places and the fit."""
     own = e.names[: len(e.names) - len(shares)]
 
     def fitted(chosen: Sequence[int]) -> tuple[Array, Fit]:
@@ -239,8 +239,8 @@ def _least(e: Equations, shares: Array, number: int) -> tuple[Array, Fit]:
 
 
 def _first(pieces: Sequence[Signals]) -> list[Signals]:
-    """The first pieces, up to a number of samples: more show the place no better. They are without
-    a sensor, with whose torque the equation has no polynomial."""
+    """Selects the first samples of a log, because more samples do not make the knees more exact.
+    The sensor torque is removed, because the equation would have no polynomial otherwise."""
     used, left = [], _MOST
     for piece in pieces:
         if left > 0:

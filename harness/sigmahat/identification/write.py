@@ -1,4 +1,4 @@
-"""Writes the result of an identification into a configuration, whose comments are kept."""
+"""Writes the result of an identification into a configuration, and keeps the comments."""
 
 import math
 from collections.abc import Mapping
@@ -23,24 +23,24 @@ from sigmahat.logs.configuration import (
 from sigmahat.logs.units import scale
 
 _ABOVE = 1.4
-"""regression.bandwidth over the balance of the noises: it costs no accuracy, and follows faster."""
-_ROOM = 1.2  # ranges over the largest values of the log: another motion may go further
+"""Ratio of regression.bandwidth to the identified bandwidth: a higher one costs no accuracy."""
+_ROOM = 1.2  # ratio of a range to the largest value in the log, because motions differ
 _KNEES = ("range.knee", "range.knee_2")
 _OF_SET_POINT = ("rls.m", "range.setPoint", "range.setPoint_center")
 _ERROR_OF_B = 0.15
-"""Least relative prior of B: RMS of its error on joints whose friction or spring the regression has
-no columns for. There the error is up to five times the interval, which contains only chance."""
+"""Least relative prior of B: RMS error of B on joints with unmodelled friction or springs. On such
+joints the error of B is up to five times the interval, which includes only random errors."""
 _MIDDLE = "not known: the middle of what identify holds possible"
 _NOT_KNOWN = (WIDE_PRIOR, NOT_YOURS, _MIDDLE)
 """Comments of values that the next log may determine."""
 
 
 def update(document: tomlkit.TOMLDocument, found: Identified, joint: str = "") -> list[str]:
-    """Sets what is determined in [parameters] and [ports.tau], everything in [identified]; joint is
-    one of several in the document.
+    """Writes determined values into [parameters] and [ports.tau], and all values into [identified],
+    for one joint of the document.
 
-    Undetermined values get a wide prior, unless the file has a prior above 0. If nobody has set
-    such a value, a comment marks it, so that no value of another robot stays unnoticed.
+    Undetermined values get a wide prior, unless the file has a prior above 0. A comment marks
+    undetermined values that the user has not set, because the value may be of another robot.
 
     Returns the keys that were set.
     """
@@ -68,7 +68,7 @@ def update(document: tomlkit.TOMLDocument, found: Identified, joint: str = "") -
                 values["prior.tau_coulomb"] = max(abs(q.value), q.half_width)
             else:
                 values[f"motor.{name}"] = q.value
-            if name == "B":  # but not for D_theta, which changes with the temperature
+            if name == "B":  # D_theta gets no prior, because friction changes with temperature
                 values["prior.B"] = max(q.half_width / q.value, _ERROR_OF_B)
     # The log may be one of several, each at another set-point.
     kept = _OF_SET_POINT if given.get("rls.m") and not found.set_point_moves else ()
@@ -104,8 +104,8 @@ def update(document: tomlkit.TOMLDocument, found: Identified, joint: str = "") -
 
 
 def _unknown(found: Identified) -> dict[str, tuple[float, str]]:
-    """Values for undetermined motor data, with a comment, by parameter: the middle of the positive
-    part of the interval, if any."""
+    """Chooses values for undetermined motor data, with a comment, by parameter: the middle of the
+    positive part of the interval, if any."""
     values = {}
     for name, own in (("B", found.B), ("D_theta", found.D_theta)):
         quantity = found.quantities.get(name)
@@ -118,10 +118,10 @@ def _unknown(found: Identified) -> dict[str, tuple[float, str]]:
 
 
 def _wide_priors(found: Identified, comments: Mapping[str, str]) -> dict[str, float]:
-    """Priors of the motor data that are not determined, by parameter.
+    """Chooses priors of the motor data that are not determined, by parameter.
 
-    comments  of the parameters that nobody has set; around the middle of an interval, WIDE holds
-              all of it
+    comments  comments of parameters that the user has not set; a prior WIDE around the middle of
+              an interval contains the interval
     """
     undetermined = {name: q for name, q in found.quantities.items() if not q.determined}
     priors = {}
@@ -133,7 +133,7 @@ def _wide_priors(found: Identified, comments: Mapping[str, str]) -> dict[str, fl
     if comments.get("motor.D_theta") == _MIDDLE:
         D_theta = None
     if D_theta is not None and math.isfinite(D_theta.half_width) and found.D_theta > 0:
-        # Encoders that are read at different times look like friction, of any sign and size.
+        # Encoders that are read at different times look like positive or negative friction.
         largest = max(abs(end / found.D_theta - 1) for end in D_theta.interval)
         priors["prior.D_theta"] = max(priors["prior.D_theta"], largest)
     tau_coulomb = undetermined.get("tau_coulomb")
@@ -144,8 +144,8 @@ def _wide_priors(found: Identified, comments: Mapping[str, str]) -> dict[str, fl
 
 
 def _remove_what_is_not_known(document: tomlkit.TOMLDocument, joint: str) -> None:
-    """Removes what `init` or an earlier run wrote because they could not tell: this one may be able
-    to. A value that somebody has put in its place stays.
+    """Removes placeholders of `init` or of an earlier run for unknown values, because this run may
+    determine the values. Values set by the user are kept.
     """
     fmu = installed("StiffnessEstimator")
     start = {name: float(fmu.variable(name).start) for name in ("motor.B", "motor.D_theta")}
@@ -157,7 +157,7 @@ def _remove_what_is_not_known(document: tomlkit.TOMLDocument, joint: str) -> Non
 
 
 def _give_to_the_joints(document: tomlkit.TOMLDocument, start: Mapping[str, float]) -> None:
-    """Moves what is not known of all joints into the section of each: some may know it soon."""
+    """Moves common placeholders into the section of each joint, because joints may differ soon."""
     names = joints.names(document)
     for place, item in joints.items(document).items():
         if place[0] != joints.JOINTS and _is_not_known(place[-1], item, start):
@@ -168,14 +168,14 @@ def _give_to_the_joints(document: tomlkit.TOMLDocument, start: Mapping[str, floa
 
 
 def _is_not_known(name: str, item: Item, start: Mapping[str, float]) -> bool:
-    """Whether nobody has set the value of a parameter; start has the values of the FMU."""
+    """Returns whether a parameter is still a placeholder; start: start values of the FMU."""
     comment, value = item.trivia.comment.rstrip(), item.unwrap()
     if not comment.endswith(_NOT_KNOWN):
         return False
     if comment.endswith(NOT_YOURS):
         return bool(value == start.get(name, value))
     if comment.endswith(WIDE_PRIOR):
-        # A wide prior of the Coulomb friction may have any value: it is the end of an interval.
+        # A wide prior of the Coulomb friction may have any value: the end of an interval.
         return bool(name == "prior.tau_coulomb" or value >= WIDE)
     return True
 

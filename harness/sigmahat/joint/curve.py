@@ -1,6 +1,6 @@
-"""The curve of a joint: torque and stiffness against the deformation, with intervals.
+"""Defines the curve of a joint: torque and stiffness by deformation, with 95 % intervals.
 
-`logs/curve.py` computes it. `estimate.curve.csv` is its table, which this module writes and reads.
+`logs/curve.py` computes the curve. This module writes and reads the table `estimate.curve.csv`.
 """
 
 from collections.abc import Iterator, Sequence
@@ -26,7 +26,7 @@ class Branch:
 
     set_point: float  #: [1]
     reach: Range
-    """Range of the measured deformation at this set-point [rad]; outside, it is extrapolated."""
+    """Range of the measured deformation at this set-point [rad]; beyond, data are extrapolated."""
     phi: Array  #: Deformation [rad], from below this range to above this range.
     tau_e: Array  #: Flexibility torque [N.m]
     tau_e_std: Array | None
@@ -37,15 +37,15 @@ class Branch:
 
     @property
     def within(self) -> NDArray[np.bool_]:
-        """Whether each point is in the range of the data."""
+        """Whether each point of the branch is in the range of the data."""
         return (self.phi >= self.reach[0]) & (self.phi <= self.reach[1])
 
     def torque_interval(self) -> tuple[Array, Array] | None:
-        """Lower and upper end of the 95 % interval of the torque [N.m]."""
+        """Computes lower and upper end of the 95 % interval of the torque [N.m]."""
         return interval(self.tau_e, self.tau_e_std)
 
     def stiffness_interval(self) -> tuple[Array, Array] | None:
-        """Lower and upper end of the 95 % interval of the stiffness [N.m/rad]."""
+        """Computes lower and upper end of the 95 % interval of the stiffness [N.m/rad]."""
         return interval(self.sigma, self.sigma_std)
 
 
@@ -64,23 +64,23 @@ class Curve:
 
 
 def interval(value: Array, std: Array | None) -> tuple[Array, Array] | None:
-    """Lower and upper end of the 95 % interval; None without a standard deviation."""
+    """Computes lower and upper end of the 95 % interval; None without a standard deviation."""
     if std is None:
         return None
     return value - NORMAL_95 * std, value + NORMAL_95 * std
 
 
 def characteristic(reach: Range) -> tuple[float, float, float]:
-    """Deformations at which the stiffness is printed [rad]: the middle, which is 0 if the range
-    contains 0, and half way to either end."""
+    """Returns deformations at which the stiffness is printed [rad]: the middle, which is 0 if the
+    range contains 0, and half way to both ends."""
     low, high = reach
     middle = 0.0 if low <= 0 <= high else (low + high) / 2
     return (low + middle) / 2, middle, (high + middle) / 2
 
 
 def nearest(settings: Sequence[float], set_points: Array) -> NDArray[np.intp]:
-    """Index of the setting, of those in increasing order, that each point belongs to; -1 if the
-    point is far from all settings."""
+    """Returns for each point the index of the nearest setting; -1 for a point far from all
+    settings. The settings are in increasing order."""
     if len(settings) == 1:
         return np.zeros(len(set_points), np.intp)
     levels = np.asarray(settings, np.float64)
@@ -108,7 +108,7 @@ _UNITS = {
 
 
 def write_curve(curve: Curve, path: Path) -> None:
-    """Writes a row for each point, numbers with all digits; missing intervals are empty fields."""
+    """Writes a curve as CSV, one row per point; fields of missing intervals are empty."""
     rows: list[tuple[object, ...]] = []
     for branch in curve.branches:
         columns = (
@@ -126,7 +126,7 @@ def write_curve(curve: Curve, path: Path) -> None:
 def read_curve(path: Path, polynomial: Polynomial) -> Curve:
     """Reads the table of a curve; the polynomial is in the data sheet, not in the table.
 
-    Raises ValueError, which says what to do, for any other file.
+    Raises ValueError with a remedy for a file that is not the table of a curve.
     """
     again = "run `sigmahat estimate` again"
     try:
@@ -160,7 +160,7 @@ _MOST_SETTINGS = 5  # largest number of set-points in a headline
 
 
 def headline(curve: Curve, doubt: str) -> str:
-    """The stiffness with its 95 % interval in one line, for each setting of a variable stiffness.
+    """Formats stiffness and 95 % interval in one line, for each setting of a variable stiffness.
 
     doubt  item of the output doubt at the end
     """
@@ -180,7 +180,7 @@ def headline(curve: Curve, doubt: str) -> str:
 
 
 def _plus_minus(branch: Branch) -> str:
-    """The stiffness in the middle with half the width of its interval, without the unit."""
+    """Formats the stiffness in the middle of the data with half of its interval, without unit."""
     _, sigma, interval = stiffness_in_the_middle(branch)
     if interval is None:
         return f"{sigma:.4g}"
@@ -190,13 +190,13 @@ def _plus_minus(branch: Branch) -> str:
 
 
 def stiffness_in_the_middle(branch: Branch) -> tuple[float, float, Range | None]:
-    """Deformation in the middle of the data [rad], its stiffness and the interval [N.m/rad]."""
+    """Returns the deformation in the middle [rad], and stiffness and interval there [N.m/rad]."""
     phi = characteristic(branch.reach)[1]
     return phi, *_at(branch, phi)
 
 
 def _in_one_line(branch: Branch) -> str:
-    """The stiffness in the middle, and its range if the range is wider than the interval."""
+    """Formats the stiffness in the middle of the data, and its range if wider than the interval."""
     phi, sigma, interval = stiffness_in_the_middle(branch)
     half = 0.0 if interval is None else (interval[1] - interval[0]) / 2
     text = f"{_plus_minus(branch)} N.m/rad at {phi:.3g} rad"
@@ -211,7 +211,7 @@ _CURVED = 0.01  # a smaller relative change of the stiffness is not printed
 
 
 def curve_text(curve: Curve, polynomial: bool = True) -> list[str]:
-    """Lines for a terminal, at most 3 or 4 of many set-points; none without data."""
+    """Formats a curve for a terminal, with 3 or 4 of many set-points; no lines without data."""
     if not curve.branches:
         return []
     lines = [f"the stiffness as a curve, {reach_in_words(curve)}:"]
@@ -225,7 +225,7 @@ def curve_text(curve: Curve, polynomial: bool = True) -> list[str]:
 
 
 def reach_in_words(curve: Curve) -> str:
-    """The range in which the curve holds, in words."""
+    """Describes the range of deformation and set-point in which the curve is valid."""
     low = min(branch.reach[0] for branch in curve.branches)
     high = max(branch.reach[1] for branch in curve.branches)
     text = f"for phi from {low:.4g} to {high:.4g} rad"
@@ -236,7 +236,7 @@ def reach_in_words(curve: Curve) -> str:
 
 
 def polynomial_in_words(polynomial: Polynomial) -> str:
-    """The torque as a polynomial, coefficients with six digits."""
+    """Formats the torque as a polynomial, with six digits of each coefficient."""
     terms = [
         f"{_coefficient(row)}{_power(' phi', power)}"
         for row, power in zip(polynomial.eta, polynomial.powers_of_phi, strict=True)
@@ -247,7 +247,7 @@ def polynomial_in_words(polynomial: Polynomial) -> str:
 
 
 def _coefficient(row: Sequence[float]) -> str:
-    """A number, or a polynomial in the set-point s in brackets."""
+    """Formats a coefficient as a number, or as a polynomial in the set-point s in brackets."""
     terms = [f"{value:.6g}{_power(' s', j)}" for j, value in enumerate(row) if value]
     return terms[0] if len(terms) == 1 else f"({_sum(terms)})"
 
@@ -261,8 +261,8 @@ def _sum(terms: Sequence[str]) -> str:
 
 
 def stiffness_table(curve: Curve) -> Iterator[tuple[str, ...]]:
-    """Cells of a head, and of a row for each characteristic deformation; or, of several
-    set-points, for each set-point."""
+    """Yields the cells of a table: a header, and one row for each characteristic deformation; with
+    several set-points, one row for each set-point."""
     several = len(curve.branches) > 1
     yield _FAMILY_HEAD if several else _STIFFNESS_HEAD
     for branch in curve.branches:
@@ -279,7 +279,7 @@ def stiffness_table(curve: Curve) -> Iterator[tuple[str, ...]]:
 
 
 def stiffness_points(curve: Curve) -> list[dict[str, object]]:
-    """The stiffnesses of both tables as numbers, for JSON."""
+    """Returns stiffnesses at characteristic deformations as numbers, for JSON."""
     return [
         {
             "setPoint": branch.set_point,
@@ -294,7 +294,7 @@ def stiffness_points(curve: Curve) -> list[dict[str, object]]:
 
 
 def _at(branch: Branch, phi: float) -> tuple[float, Range | None]:
-    """Stiffness and interval at one of the points of a branch."""
+    """Returns stiffness and interval at the point of a branch that is nearest to phi."""
     at = int(np.argmin(np.abs(branch.phi - phi)))
     ends = branch.stiffness_interval()
     interval = None if ends is None else (float(ends[0][at]), float(ends[1][at]))

@@ -1,6 +1,6 @@
-"""The start values of a data sheet as a file for another tool: SSV, MATLAB, Modelica.
+"""Writes the start values of a data sheet as a file for another tool: SSV, MATLAB, Modelica.
 
-Each number has all digits, so that the FMU gets the estimate to the last bit.
+Numbers are written with all digits, so that the FMU gets exactly the estimate.
 """
 
 import re
@@ -20,7 +20,7 @@ _TEMPLATES = environment(Path(__file__).with_name("templates"))
 
 @dataclass(frozen=True)
 class _Start:
-    """A start value, and its variable of the FMU."""
+    """A start value, and the variable of the FMU that gets the value."""
 
     name: str
     variable: Any  # FMPy's description
@@ -29,7 +29,7 @@ class _Start:
 
     @property
     def text(self) -> str:
-        """The value, as all of the formats write it."""
+        """Text of the value, which is equal in all formats."""
         if self.variable.type == "Boolean":
             return "true" if self.value else "false"
         return repr(self.value)
@@ -53,16 +53,16 @@ def _starts(sheet: Sheet, fmu: Fmu) -> Iterator[_Start]:
 
 
 def _head(sheet: Sheet) -> Iterator[str]:
-    """Lines about the purpose of the file and the origin of its values."""
+    """Yields lines about the purpose of the file and the origin of the values."""
     yield f"Start values with which {sheet.fmu.name}.fmu continues from the estimate below."
     yield from origin(sheet)
 
 
 def _ssv(sheet: Sheet, fmu: Fmu, starts: list[_Start], name: str) -> str:
-    """A parameter set after SSP 1.0, which SSP 2.0 reads as well.
+    """Formats a parameter set of SSP 1.0, which tools for SSP 2.0 can read as well.
 
-    Importers disagree on the form of Booleans and enumerations: they are written only if the
-    default of the FMU differs.
+    Importers disagree on the form of Booleans and enumerations. Therefore such a value is written
+    only if the value differs from the default of the FMU.
     """
     numbers, own = ("Real", "Integer"), fmu.parameters({})
     listed = [s for s in starts if s.variable.type in numbers or own[s.name] != (s.item or s.value)]
@@ -85,7 +85,7 @@ def _ssv(sheet: Sheet, fmu: Fmu, starts: list[_Start], name: str) -> str:
 
 
 def _matlab(sheet: Sheet, fmu: Fmu, starts: list[_Start], name: str) -> str:
-    """A function that returns a structure: parameter motor.B is field motor.B."""
+    """Formats a MATLAB function that returns a structure: parameter motor.B is field motor.B."""
     _identifier(name)
     lines = [f"function p = {name}", f"%{name.upper()} {sheet.fmu.name}: what was learned."]
     lines += [f"%   {line}" for line in _head(sheet)]
@@ -102,7 +102,7 @@ def _matlab(sheet: Sheet, fmu: Fmu, starts: list[_Start], name: str) -> str:
 
 
 def _modelica(sheet: Sheet, fmu: Fmu, starts: list[_Start], name: str) -> str:
-    """A record: parameter motor.B is component motor.B; model, a word of Modelica, is 'model'."""
+    """Formats a Modelica record: parameter motor.B is component motor.B; model becomes 'model'."""
     _identifier(name)
     single, curve = _divided(starts)
     groups: dict[str, list[str]] = {}
@@ -139,7 +139,7 @@ def _component(s: _Start) -> str:
 
 
 def _divided(starts: list[_Start]) -> tuple[list[_Start], list[list[float]]]:
-    """Single start values, and the matrix rls.eta_0."""
+    """Splits start values into single values and the matrix rls.eta_0."""
     single, curve = [], {}
     for s in starts:
         if s.name.startswith(_CURVE):
@@ -152,7 +152,7 @@ def _divided(starts: list[_Start]) -> tuple[list[_Start], list[list[float]]]:
 
 
 def _matrix(rows: list[list[float]]) -> str:
-    """A matrix as in MATLAB and Modelica."""
+    """Formats a matrix in the syntax of MATLAB and Modelica."""
     return f"[{'; '.join(', '.join(map(repr, row)) for row in rows)}]"
 
 
@@ -168,7 +168,7 @@ _RESERVED = frozenset(_WORDS.split())  # words of Modelica and, in the last line
 
 
 def _identifier(name: str) -> None:
-    """Raises ValueError for a name that no function and no record can have."""
+    """Raises ValueError for a name that is not allowed for a MATLAB function or Modelica record."""
     if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name) or name in _RESERVED:
         raise ValueError(
             f"file name {name!r}: expected letters, digits and _, a letter first, and no keyword "
@@ -181,4 +181,4 @@ KINDS: Mapping[str, Callable[[Sheet, Fmu, list[_Start], str], str]] = {
     "matlab": _matlab,
     "modelica": _modelica,
 }
-"""Functions that make the text of a file, by kind."""
+"""Functions that format the text of a parameter file, by kind of the file."""

@@ -1,10 +1,10 @@
-"""A joint as a model for simulators of robots: MJCF, SDF, URDF, and SDF with Drake's elements.
+"""Writes a joint as a model for robot simulators: MJCF, SDF, URDF, and SDF for Drake.
 
 The joint is two hinges with one axis. The first hinge is the motor at its gear output. The second
 hinge is the flexibility, with the deformation phi as its angle, and -tau_e as the torque of its
 spring.
 
-Each number has all of its digits. A comment has the 95 % interval of the number. If the format
+Numbers are written with all digits. Comments have the 95 % intervals of the numbers. If the format
 allows, the interval is also a range for domain randomization. The formats are templates in
 ``templates/``.
 """
@@ -21,8 +21,8 @@ from sigmahat.files.templates import environment
 from sigmahat.joint.sheet import Parameter, Sheet, one_line, origin
 from sigmahat.joint.stored import Range
 
-_ROTOR = 1e-6  # least inertia of a link; of a rotor whose inertia is written elsewhere [kg.m2]
-_EXACT = 1e-3  # error of a polynomial, relative to its largest torque, that is worth a comment
+_ROTOR = 1e-6  # least inertia of a link, used for a rotor with a separate inertia [kg.m2]
+_EXACT = 1e-3  # least error of a polynomial that is reported, relative to the largest torque
 _MISSING = {
     "mjcf": "",
     "sdf": "SDF has no rotor inertia: the link rotor has this inertia, at the gear output.",
@@ -38,11 +38,11 @@ class Spring:
 
     reference: float  # deformation without torque [rad]
     stiffness: tuple[float, ...]  # [N.m/rad], [N.m/rad2] and so on
-    error: float  # largest error of this torque over the largest torque in the data [1]
+    error: float  # largest error of this torque divided by the largest torque in the data [1]
 
 
 def _parameters(sheet: Sheet) -> dict[str, Parameter]:
-    """Parameters at the gear output that may have an interval, by hinge and parameter."""
+    """Returns parameters at the gear output, with intervals, by hinge and parameter."""
     p, gamma = sheet.parameters, sheet.parameters["gamma"].value
     return {
         "motor.armature": _scaled(p["B"], gamma**2, "kg.m2"),
@@ -54,7 +54,7 @@ def _parameters(sheet: Sheet) -> dict[str, Parameter]:
 
 
 def _scaled(parameter: Parameter | None, factor: float, unit: str) -> Parameter:
-    """A parameter of the motor at the gear output; value and interval are not below 0."""
+    """Scales a motor parameter to the gear output; value and interval are not below 0."""
     if parameter is None:
         return Parameter(0.0, unit, None, "absent")
     value, interval = max(factor * parameter.value, 0.0), None
@@ -65,9 +65,9 @@ def _scaled(parameter: Parameter | None, factor: float, unit: str) -> Parameter:
 
 
 def _factor(sheet: Sheet) -> Parameter:
-    """Factor 1 with half the mean interval of the stiffness divided by the mean stiffness.
+    """Computes the interval of a factor of the stiffness, from the relative interval in the data.
 
-    The torque, which is the integral of the stiffness, has at most this error.
+    The torque is the integral of the stiffness, and has at most the same relative error.
     """
     setting = sheet.at_the_end.set_point
     near = min((abs(each.set_point - setting) for each in sheet.curve or ()), default=0.0)
@@ -83,7 +83,7 @@ _POINTS = 201
 
 
 def _spring(sheet: Sheet, reach: Range, degree: int) -> Spring:
-    """The polynomial of this degree that is nearest to the curve of the sheet in its range."""
+    """Fits a polynomial of the given degree to the curve of the sheet, in the range of the data."""
     source = sheet.polynomial
     phi = np.linspace(*reach, _POINTS)
     torque, _ = source.at(phi, sheet.at_the_end.set_point)
@@ -107,7 +107,7 @@ def _spring(sheet: Sheet, reach: Range, degree: int) -> Spring:
 
 
 def _zero(torque: Polynomial, phi: np.ndarray[tuple[int], np.dtype[np.float64]]) -> float:
-    """The deformation without torque that is nearest to the middle of the data [rad]."""
+    """Finds the deformation without torque that is nearest to the middle of the data [rad]."""
     if not torque.coef[0]:
         return 0.0
     roots = torque.roots()
@@ -155,7 +155,7 @@ _SHOWN = 0.01  # fraction of the largest torque: a smaller effect is not listed
 
 
 def _limits(sheet: Sheet, spring: Spring, reach: Range) -> Iterator[str]:
-    """Lines about what the model does not show of the joint."""
+    """Yields lines about effects of the joint that the model does not contain."""
     low, high = reach
     yield f"The deformation was {low:.4g} to {high:.4g} rad; beyond this, it is extrapolated."
     if spring.error > _EXACT:

@@ -1,7 +1,7 @@
-"""The data sheet of a joint, `joint.json`: results for people, scripts and other tools, and start
+"""Defines and writes the data sheet of a joint, `joint.json`: results of an estimation, and start
 values with which the FMU continues from these results.
 
-Numbers are written with all of their digits, so that a reader gets exactly the estimates.
+Numbers are written with all digits, so that a reader gets exactly the estimates.
 """
 
 import re
@@ -25,7 +25,7 @@ UNITS = {"phi": "rad", "set_point": "1", "sigma": "N.m/rad", "tau_e": "N.m", "mi
 
 @dataclass(frozen=True, config=NO_OTHER_KEYS)
 class Source:
-    """A file from which the sheet was made."""
+    """The configuration file from which the data sheet was created."""
 
     file: Text  # path of the file
     sha256: Text | None  # SHA-256 of the bytes; None if the file does not exist
@@ -33,7 +33,7 @@ class Source:
 
 @dataclass(frozen=True, config=NO_OTHER_KEYS)
 class Stiffness:
-    """The stiffness at a point."""
+    """The stiffness at one deformation and set-point, with its interval."""
 
     phi: float  # deformation [rad]
     set_point: float  # set-point [1]
@@ -93,7 +93,7 @@ class RestsOn:
 
     torque_gain: float
     """Relative standard deviation of the gain of the torque [1]; the intervals include it."""
-    sigma_per_gain: float  # relative change of the stiffness per relative change of that gain [1]
+    sigma_per_gain: float  # relative change of the stiffness per relative change of the gain [1]
     exact: list[Text]  # parameters that are taken as exact
     absent: list[Text]  # effects that are taken as absent
 
@@ -108,7 +108,7 @@ class Check:
 
 @dataclass(frozen=True, config=NO_OTHER_KEYS)
 class Sheet:
-    """The contents of the file."""
+    """The contents of the data sheet `joint.json`."""
 
     format: Text
     version: int
@@ -116,7 +116,7 @@ class Sheet:
     units: dict[str, Text]
     """Units of the numbers with these keys in the file; an interval has the unit of its value."""
     fmu: FmuId
-    logs: list[LearnedLog]  # logs from which the estimator has learned, in this order
+    logs: list[LearnedLog]  # logs that the estimator has processed, in this order
     configuration: Source
     method: Text
     modality: Text
@@ -138,36 +138,36 @@ FORMAT = Format("joint.json", "sigmahat joint data sheet", 1, Sheet)  # format o
 
 
 def write(sheet: Sheet, path: Path) -> None:
-    """Writes a sheet. A number that is not finite becomes null."""
+    """Writes a data sheet as JSON. A number that is not finite becomes null."""
     write_json(asdict(sheet), path)
 
 
 def origin(sheet: Sheet) -> Iterator[str]:
-    """The origin of the values, a line for each source, for comments in other files."""
+    """Yields lines about the origin of the values, for comments in other files."""
     for log in sheet.logs:
         yield f"learned from {one_line(log.file)}, SHA-256 {log.sha256}"
     yield f"written by sigmahat {one_line(sheet.sigmahat)}"
 
 
 def one_line(text: str) -> str:
-    """The text without characters that could end a line, a comment or a string of other formats."""
+    """Replaces characters that could end a line, a comment or a string in other file formats."""
     return re.sub(r"-(?=-)", "- ", re.sub(r"[^\w .,:/\\+()@=-]", "_", text, flags=re.ASCII))
 
 
 def powers_of_phi(symmetric: bool, n: int) -> list[int]:
-    """Powers of the deformation in a polynomial of order n, (18)."""
+    """Returns the powers of the deformation in a polynomial of order n, (18)."""
     return [2 * i + 1 if symmetric else i for i in range(n)]
 
 
 def _units(powers: Sequence[int], m: int) -> list[list[str]]:
-    """Units of the coefficients, of m powers of the set-point."""
+    """Returns the units of the coefficients, with m powers of the set-point."""
     return [[{0: "N.m", 1: "N.m/rad"}.get(power, f"N.m/rad{power}")] * m for power in powers]
 
 
 def polynomial(
     start: Mapping[str, Value], phi: Range | None, set_point: Range | None
 ) -> Polynomial:
-    """The curve of start values; phi and set_point are the ranges of the data."""
+    """Creates the polynomial of start values; phi and set_point are the ranges of the data."""
     n, m = int(start["rls.n"]), int(start["rls.m"])
     powers = powers_of_phi(bool(start["rls.symmetric"]), n)
     return Polynomial(
@@ -188,9 +188,9 @@ _SAME = 1e-6  # relative difference of two stiffnesses by rounding
 def with_knees(
     curve: Polynomial, phi: Array, set_point: Array, tau_e: Array, sigma: Array
 ) -> Polynomial:
-    """The polynomial that is nearest to the curve of an estimator, which may have knees.
+    """Fits a polynomial to the curve of an estimator, whose slope may change suddenly at knees.
 
-    The knees are not part of the given coefficients. Without knees, the curve is unchanged.
+    The given coefficients do not contain the knees. Without knees, the curve is unchanged.
 
     phi, set_point, tau_e, sigma   outputs of the estimator [rad, 1, N.m, N.m/rad], of one size
     """
@@ -213,7 +213,7 @@ def with_knees(
 
 
 def start_of(curve: Polynomial) -> dict[str, Value]:
-    """The start values of an FMU for the curve."""
+    """Returns the start values with which an FMU has the given curve."""
     start: dict[str, Value] = {
         f"rls.eta_0[{i},{j}]": value
         for i, row in enumerate(curve.eta)
@@ -227,17 +227,17 @@ _NOT_IN_A_RUN = (
     *("B", "load_friction", "eccentric", "eccentric_motor", "delay", "reversal", "power", "gap"),
     "hysteresis",
 )
-"""Priors of effects that do not differ from run to run."""
+"""Names of the priors of effects that are equal in all recordings of a joint."""
 _NONE = 1e-6  # uncertainty of a curve: so small that the curve does not change
 _LARGEST = 1e12  # largest prior that the FMU accepts
 
 
 def start_values(slave: Slave, every: Mapping[str, Value]) -> dict[str, Value]:
-    """Start values of an FMU with the present curve and motor data of a slave.
+    """Returns start values of an FMU from the present curve and motor data of a slave.
 
-    The polynomial has all powers of the curve: FilteredRegression may use higher powers than rls.n
-    and rls.m have. Priors do not change: the new FMU takes the curve as the mean of its prior, but
-    the uncertainty of the curve is lost.
+    FilteredRegression may use higher powers than given by rls.n and rls.m; all powers are returned.
+    Priors do not change: the new FMU takes the curve as the mean of its prior. The uncertainty of
+    the curve is lost.
 
     every  parameters of the slave
     """
@@ -260,12 +260,12 @@ def start_values(slave: Slave, every: Mapping[str, Value]) -> dict[str, Value]:
 
 
 def as_fixed_curve(start: Mapping[str, Value]) -> dict[str, Value]:
-    """Start values with which the curve and the inertia do not change.
+    """Returns start values with which the curve and the inertia are not estimated.
 
-    A fit to all samples estimates only effects that differ from run to run. These are bias of the
-    torque or zero of the deformation, friction, and the time between the encoders (as a damping).
-    Other effects would hide a wrong stiffness: in a motion of one frequency, for example,
-    a delay of the torque looks like a wrong stiffness.
+    Only effects are estimated that differ between recordings. These are bias of the torque or zero
+    of the deformation, friction, and a time lag between the encoders (as a damping). Other effects
+    would hide a wrong stiffness: a delay of the torque, for example, looks like a wrong stiffness
+    in a motion of one frequency.
 
     start  from start_values, of the method FilteredRegression
     """

@@ -1,4 +1,4 @@
-"""JSON files that `sigmahat estimate` writes: they name their format, and share some records."""
+"""Reads the JSON files of `sigmahat estimate`, and defines their formats and common records."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Range = tuple[float, float]  # least and largest value
 
 @dataclass(frozen=True)
 class LearnedLog:
-    """A log from which the estimator has learned."""
+    """A log that the estimator has processed."""
 
     __pydantic_config__ = NO_OTHER_KEYS
 
@@ -43,7 +43,7 @@ class FmuId:
 
     @staticmethod
     def of(fmu: Fmu) -> FmuId:
-        """The identity of an FMU."""
+        """Returns the identity of an FMU."""
         return FmuId(fmu.name, fmu.description.version or "", fmu.description.guid)
 
 
@@ -61,7 +61,7 @@ class Format(Generic[_Contents]):
     contents: type[_Contents]  # dataclass with format, version and all other fields of the file
 
     def path(self, given: Path) -> Path:
-        """The path of the file: `given` is the file, or the folder of the file."""
+        """Returns the path of the file; `given` is the file, or the folder that contains it."""
         return given / self.file if given.is_dir() else given
 
     def read(self, given: Path) -> _Contents:

@@ -134,7 +134,7 @@ class Joints:
     ) -> Callable[[int, int], None]:
         """A function that runs the ticks of samples first to end - 1.
 
-        The arrays, as for run(), have a row for each joint, from `joint` on. The arrays have to
+        The arrays, as for run(), have one row for each joint from `joint` on. The arrays must
         exist as long as the function is called.
         """
         joints, samples = next(each.shape for each in inputs if each is not None)

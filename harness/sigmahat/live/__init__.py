@@ -1,1 +1,1 @@
-"""The estimator on a robot: samples as they arrive, estimates as they are computed."""
+"""Runs the estimator on a robot, with estimates in real time."""

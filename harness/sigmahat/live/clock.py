@@ -6,7 +6,7 @@ from sigmahat.logs.log import EXACT
 
 _LATE = 1.0  # a sample that is late by less than this time was overtaken by other samples [s]
 LONGEST_PAUSE = 1.0  # [s] after a longer one, the time is wrong or the sender has restarted
-_STARTED = 20  # samples in order, far from the others: the sender has restarted
+_STARTED = 20  # number of ordered samples at other times that shows a restart of the sender
 _ADAPT = 0.01
 _SHORTEST = 1e-6  # [s] between two samples
 
@@ -31,7 +31,7 @@ class Clock:
         self._in_order = 0
 
     def take(self, stamp: int | float) -> float | None:
-        """The time of the next sample [s]; None if the sample has to be left out."""
+        """Returns the time of the next sample [s]; None if the sample must be left out."""
         if stamp != stamp or (self.shift and not isinstance(stamp, int)):
             self.strays += 1
             return None

@@ -1,4 +1,4 @@
-"""Sources and sinks by their names on the command line: UDP, TCP, standard input, or a log."""
+"""Creates sources and sinks by their names on the command line, such as UDP, TCP, or a log."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ class Endpoints:
         return read
 
     def sink(self, name: str) -> Sink:
-        """The sink of this name; for Foxglove, the layout is also written."""
+        """Creates the sink of the given name; for Foxglove, the layout is also written."""
         kind, _, rest = name.partition(":")
         if name == "ros2":
             return self._ros2.publish()
@@ -124,7 +124,7 @@ def _address(option: str, text: str) -> _Address:
 
 
 def _udp(address: _Address, decoders: _Decoders) -> Source:
-    """A datagram is a message. Raises OSError if the address is not available."""
+    """Creates a source of UDP datagrams. Raises OSError if the address is not available."""
     bound = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     bound.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _BUFFER)
     bound.bind(address)
@@ -138,7 +138,7 @@ def _udp(address: _Address, decoders: _Decoders) -> Source:
 
 
 def _tcp(address: _Address, decoders: _Decoders) -> Source:
-    """A line is a message; any number of senders connect. Raises as _udp."""
+    """Creates a source of lines from any number of TCP senders. Raises OSError as _udp does."""
     server = socket.create_server(address)
 
     def read(inbox: Inbox) -> None:
@@ -174,7 +174,7 @@ def _lines(file: BinaryIO, inbox: Inbox, decoder: Decoder) -> None:
 def _rows(
     log: Log, time_column: str, period: float, columns: Collection[str]
 ) -> Iterator[tuple[float, Columns]]:
-    """Times [s] and columns of the rows of a log that have a time.
+    """Yields time [s] and columns of each row of a log that has a time.
 
     period  time between rows without a time column; else unit of the time column [s]
     """
@@ -189,7 +189,7 @@ def _rows(
 
 
 def _send_udp(address: _Address) -> Sink:
-    """A datagram for each tick, as PlotJuggler reads it: {"timestamp": t, "elbow": {...}}.
+    """Creates a sink of UDP datagrams for PlotJuggler: {"timestamp": t, "elbow": {...}}.
 
     A missing receiver is no error.
     """

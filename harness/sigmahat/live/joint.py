@@ -1,6 +1,6 @@
-"""One joint on line: its samples at the ticks, its estimator, and the logs of this estimator.
+"""Runs the estimator of one joint on line, with samples at the ticks of the estimator.
 
-Samples are moved to the ticks, units and counters converted, as in logs/sampling.py.
+Samples are interpolated at the ticks, and units and counters converted, as in logs/sampling.py.
 """
 
 import math
@@ -33,7 +33,7 @@ _FLAGS = ("confident", "valid")
 GIVEN = (*OUTPUTS, *_FLAGS, "doubt")  # all outputs that are sent to the sinks
 BANDED = ("sigma", "tau_e")  # outputs whose 95 % intervals are sent, too: sigma_low, ...
 _PATIENCE = 0.2  # [s] a tick waits for a port without samples while other ports have some
-_WAITING, _MOST = 1000, 10_000  # samples that wait for the first time, and for slower ports
+_WAITING, _MOST = 1000, 10_000  # most samples that wait for the first time, for slower ports
 _USUAL_GAP = 3.0  # longest gap that is interpolated, in periods, if none is configured
 
 
@@ -44,7 +44,7 @@ class Estimated:
     outputs: Mapping[str, Any]  # values of the outputs GIVEN
 
     def shown(self) -> dict[str, Any]:
-        """Outputs and intervals for JSON, which has no nan and no infinity."""
+        """Returns outputs and intervals for JSON, which has no nan and no infinity."""
         values = dict(self.outputs)
         for name in BANDED:
             half = NORMAL_95 * values[f"{name}_std"]
@@ -54,7 +54,7 @@ class Estimated:
 
 
 class LivePort:
-    """The samples of a port from which its value at the next tick will be computed."""
+    """Samples of a port, from which the value of the port at the next tick is computed."""
 
     def __init__(self, name: str, port: Port, T: float, longest_gap: float) -> None:
         """T  time between ticks [s]; longest_gap  longest gap that is interpolated [s]"""
@@ -71,7 +71,7 @@ class LivePort:
         self._jumps = 0.0
 
     def add(self, t: float, value: float) -> None:
-        """The next sample of the column; t is the time since the first tick [s]."""
+        """Adds the next sample of the column; t is the time since the first tick [s]."""
         period = self.port.wrap
         if not math.isfinite(value):
             return
@@ -83,9 +83,9 @@ class LivePort:
         self._next.append((t - self.port.delay, (value - self.port.zero) * self._scale))
 
     def at(self, tick: int) -> float | None:
-        """The value at a tick, nan without a value; None if the value depends on a later sample.
+        """Returns the value at a tick, nan without a value; None if a later sample is needed.
 
-        Calls must have increasing ticks.
+        The ticks of successive calls must increase.
         """
         if self.port.value is not None:
             return self.port.value
@@ -155,7 +155,7 @@ class LiveJoint:
             port.restart()
 
     def take(self, columns: Columns, times: Mapping[str, float]) -> Iterator[Estimated]:
-        """Yields the ticks that a message makes possible.
+        """Yields the estimates at all ticks that a new message allows to compute.
 
         times  values of the time columns in the message [s]
         """
@@ -173,14 +173,14 @@ class LiveJoint:
         yield from self._run(self._start, is_end=False)
 
     def time_column(self, port: str) -> str:
-        """Column with the times of a port; "" for the time of arrival."""
+        """Returns the name of the column with the times of a port; "" for the time of arrival."""
         own = self.ports[port].port.time if port else None
         return own or self.configuration.time.column or ""
 
     def end(self, recording: Path, digest: str, learned: Path) -> Iterator[Estimated]:
-        """Yields the last ticks of a recording, and writes what was learned.
+        """Yields the last estimates of a recording, and writes the state of the estimator.
 
-        recording, digest  the file, and its SHA-256; learned  file to write
+        recording, digest  recorded file and its SHA-256; learned  file for the state
         """
         if self._start is not None:
             yield from self._run(self._start, is_end=True)
@@ -192,7 +192,7 @@ class LiveJoint:
         write_learned(self.slave, self._every, self._logs, learned)
 
     def go_on(self) -> None:
-        """After the end of a recording: the filters start again with the next sample."""
+        """Continues after the end of a recording; filters start again with the next sample."""
         self._t_0 = gap(self.slave, self._t_0, self._every)
 
     def _run(self, start: float, is_end: bool) -> Iterator[Estimated]:
@@ -203,7 +203,7 @@ class LiveJoint:
                 value = port.at(self._ticks)
                 if value is None:
                     at_tick = start + self._ticks * self.T + port.port.delay
-                    # Other ports are so far ahead that this tick no longer waits for the port.
+                    # If other ports are far ahead, the tick no longer waits for this port.
                     patience = max(_PATIENCE, self.longest_gap * (1 + AT_TICK))
                     if not is_end and newest <= at_tick + patience:
                         return
@@ -235,7 +235,7 @@ class _Counter:
         self._ports = configuration.ports
         self._most = configuration.parameters.get("range.phi")
         both, self._period = counter(self._ports)
-        self._both = [list(self._ports).index(name) for name in both]  # what is put right is first
+        self._both = [list(self._ports).index(name) for name in both]  # the corrected port is first
         self._last: NDArray[Any] | None = None
         self._was_missing = False
         self._total = self._at_start = 0

@@ -1,8 +1,8 @@
-"""A message in JSON or CSV as columns of numbers. All contents of a message are checked.
+"""Decodes a message in JSON or CSV to columns of numbers. All contents of a message are checked.
 
-JSON is an object, as PlotJuggler reads it: {"elbow": {"motor": [1.5, 2]}} are the columns
-"elbow/motor[0]" and "elbow/motor[1]". CSV is one line that ends with a line feed, since a number
-that is cut off is still a number. A first line, or an option, names the columns of CSV.
+A JSON message is an object, as in PlotJuggler: {"elbow": {"motor": [1.5, 2]}} has the columns
+"elbow/motor[0]" and "elbow/motor[1]". A CSV message is one line with a line feed, which shows that
+the last number is complete. A first line, or an option, names the columns of CSV.
 """
 
 import json
@@ -28,7 +28,7 @@ class Decoder:
         self._csv = self._named(columns)
 
     def columns(self, message: bytes) -> Columns | None:
-        """The columns that are used; None for a line that names columns.
+        """Decodes the used columns of a message; None for a line with names of columns.
 
         Raises ValueError, which says what was expected and what was received.
         """
@@ -88,7 +88,7 @@ def _parsed(cell: str) -> int | float | str | None:
 
 
 def number(name: str, value: Any) -> int | float:
-    """A value of a column; nan if it is not finite. Raises ValueError if it is no number."""
+    """Checks a value of a column; nan if not finite. Raises ValueError if it is no number."""
     if value is None or (isinstance(value, float) and not math.isfinite(value)):
         return math.nan
     if isinstance(value, bool) or not isinstance(value, (int, float)) or abs(value) >= _LARGEST:

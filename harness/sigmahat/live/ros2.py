@@ -48,7 +48,7 @@ _ANY = Qos(Policy.Reliability.BestEffort, Policy.History.KeepLast(1000))
 
 
 def _type(ros: str, **fields: Any) -> Any:
-    """The type of a message for DDS, from its name "package/Name" in ROS 2."""
+    """Creates the DDS type of a message from its ROS 2 name, such as "package/Name"."""
     package, _, name = ros.partition("/")
     return make_idl_struct(name, f"{package}::msg::dds_::{name}_", fields)
 
@@ -115,7 +115,7 @@ class Ros2:
         return read
 
     def _columns(self, topic: str, message: Any) -> Columns:
-        """The numbers of a JointState by column.
+        """Returns the numbers of a JointState message by column.
 
         Raises ValueError for a message without a stamp, or unequal numbers of names and values.
         """

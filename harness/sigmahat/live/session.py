@@ -1,4 +1,4 @@
-"""All joints on line: messages in, estimates out, and a recording of the messages.
+"""Runs the estimators of all joints on line, and records the messages.
 
 A sender that starts again, or a pause of more than a second, ends the recording. The estimators
 continue with another recording, as `sigmahat estimate --start-from` does.
@@ -35,7 +35,7 @@ pa.array(np.empty(0))
 
 
 class _Recording:
-    """A Parquet file with a row for each message; what a message lacks is empty in its row."""
+    """A Parquet file with a row for each message; missing values are empty."""
 
     def __init__(self, path: Path, columns: Mapping[str, bool]) -> None:
         """Makes the file, which is complete after close(). Raises OSError if it cannot be written.
@@ -97,7 +97,7 @@ class Session:
         self._recording: _Recording | None = None
 
     def take(self, columns: Columns, arrival: int) -> list[Estimated]:
-        """The ticks that a message makes possible, in the order of the joints.
+        """Computes the estimates at all ticks that a message allows, in the order of the joints.
 
         columns  values of the message, by the names in self.columns
         arrival  time of arrival of the message [ns] since 1970
@@ -128,7 +128,7 @@ class Session:
         return [each for joint in self.joints for each in joint.take(columns, times)]
 
     def _end_recording(self) -> list[Estimated]:
-        """Completes the recording, and writes what was learned. Returns the ticks that had to wait.
+        """Completes the recording, writes estimator states, and returns the remaining estimates.
 
         Raises OSError if a file cannot be written.
         """
@@ -156,7 +156,7 @@ class Session:
         return found
 
     def _configuration(self) -> tomlkit.TOMLDocument:
-        """The configuration with which `estimate` repeats the estimates from the recording."""
+        """Creates a configuration with which `estimate` repeats the estimates of a recording."""
         document = copy.deepcopy(self._document)
         for joint in self.joints:
             section = of_file.section(document, joint.configuration.joint)

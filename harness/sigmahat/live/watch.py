@@ -1,4 +1,4 @@
-"""The loop: messages from the inbox through the session to the sinks, until it is stopped."""
+"""Runs the on-line loop: passes messages to the session, and estimates to the sinks."""
 
 import logging
 import shutil
@@ -31,7 +31,7 @@ Sink = Callable[[Sequence[Estimated]], None]  # sends the ticks of one message o
 
 
 class Inbox(Queue[tuple[int, Reader]]):
-    """Messages that wait, each with its time of arrival [ns] since 1970."""
+    """Queue of received messages, each with its time of arrival [ns] since 1970."""
 
     def __init__(self) -> None:
         super().__init__(_MOST)
@@ -51,7 +51,7 @@ Source = Callable[[Inbox], None]
 
 
 def watch(session: Session, inbox: Inbox, sinks: Sequence[Sink]) -> None:
-    """Estimates until the messages end, or until Ctrl-C or SIGTERM.
+    """Runs the estimators until the last message, or until Ctrl-C or SIGTERM.
 
     A warning shows the first message that cannot be read; all such messages are counted.
     """
@@ -109,7 +109,7 @@ def _look(session: Session, seen: Set[str]) -> None:
 
 
 def terminal() -> Sink:
-    """A line for each joint on stderr, with its last estimate; replaced in a terminal."""
+    """Creates a sink that prints the last estimate of each joint in a line on stderr."""
     last: dict[str, Estimated] = {}
     is_terminal = sys.stderr.isatty()
     shown_at, shown = time.monotonic(), 0

@@ -1,7 +1,7 @@
-"""The configuration of a log: which column feeds which port, and the parameters of the estimator.
+"""Reads the configuration of a log: columns for the ports, and parameters of the estimator.
 
-docs/how-to-log.md has an example, and joints.py says how one file configures several joints. The
-file is TOML, because people can read it and tomlkit keeps its comments when identify writes.
+docs/how-to-log.md has an example, and joints.py describes the file for several joints. The format
+TOML is easy to read, and tomlkit keeps the comments when identify writes the file.
 """
 
 from collections.abc import Mapping
@@ -23,15 +23,15 @@ PORTS = {"theta": "rad", "q": "rad", "theta_c": "rad", "tau": "N.m", "tau_e_sens
 """Inputs of StiffnessEstimator and their units."""
 
 FILL_IN = "FILL IN"
-"""Text in place of an unknown column; also the first words of comments on missing values."""
+"""Placeholder for an unknown column, and first words of the comments on missing values."""
 NOT_YOURS = "not known: of another robot, until identify finds it or you set it"
 """Comment of a motor parameter that the user has not set."""
 WIDE_PRIOR = "wide, because it is not known; make it smaller if you know better"
-"""Comment of a prior of such a parameter."""
+"""Comment of the prior of a motor parameter that the user has not set."""
 ANOTHER_ROBOT = 1000.0
-"""Value of this prior: small and large motors differ by this factor. Accuracy hardly suffers."""
+"""Prior of unknown motor data: small and large motors differ by this factor."""
 ANY_COULOMB = 1.0
-"""prior.tau_coulomb for unknown friction [N.m]: a large value hardly reduces accuracy either."""
+"""Value of prior.tau_coulomb for unknown friction [N.m]: a large value reduces accuracy little."""
 
 _NEEDED = {"Residual": ("theta", "q", "tau"), "Sensor": ("q", "tau_e_sensor"), "Model": ("q",)}
 """Ports that a modality needs."""
@@ -86,7 +86,7 @@ class Port:
 
 @dataclass(frozen=True)
 class Time:
-    """When the samples were taken."""
+    """The times of the samples in a log."""
 
     __pydantic_config__ = _NO_OTHER_KEYS
 
@@ -125,7 +125,7 @@ def _port_name(name: str) -> str:
 
 @dataclass(frozen=True)
 class _File:
-    """The sections of a file."""
+    """The sections of a configuration file."""
 
     __pydantic_config__ = _NO_OTHER_KEYS
 
@@ -138,7 +138,7 @@ class _File:
 def read_configuration(path: str | Path, joint: str = "") -> Configuration:
     """Reads and checks a file; from a file of several joints, the configuration of one joint.
 
-    Raises LogError, which says where the file is wrong.
+    Raises LogError, which names the place of the error in the file.
     """
     path = Path(path)
     return checked_configuration(read_document(path), path, joint)
@@ -147,9 +147,9 @@ def read_configuration(path: str | Path, joint: str = "") -> Configuration:
 def checked_configuration(
     document: tomlkit.TOMLDocument, path: Path, joint: str = ""
 ) -> Configuration:
-    """The configuration in a document, which need not be written to the file yet.
+    """Checks the configuration in a document, which need not be written to the file yet.
 
-    Raises LogError, which says where the document is wrong.
+    Raises LogError, which names the place of the error in the document.
     """
     known = joints_of(document, path)
     if joint not in known:
@@ -180,9 +180,9 @@ def checked_configuration(
 
 
 def _refuse_repeated(file: _File, path: Path) -> None:
-    """Raises LogError if a column feeds two ports, or is the time as well.
+    """Raises LogError if a column is used for two ports, or for a port and for the time.
 
-    The torque of a sensor may also be the position of a motor: that of a test bench that gives way.
+    Only the port tau_e_sensor may share a column, as for the motor of a compliant test bench.
     """
     used = {file.time.column: "time"}
     for name, port in file.ports.items():
@@ -197,7 +197,7 @@ def _refuse_repeated(file: _File, path: Path) -> None:
 
 
 def joints_of(document: tomlkit.TOMLDocument, path: Path) -> list[str]:
-    """The joints of a file, [""] for a single joint. Raises LogError for an impossible name."""
+    """Returns the names of the joints, [""] for one joint. Raises LogError for a wrong name."""
     try:
         return joints.names(document)
     except ValueError as error:
@@ -205,7 +205,7 @@ def joints_of(document: tomlkit.TOMLDocument, path: Path) -> list[str]:
 
 
 def read_document(path: Path) -> tomlkit.TOMLDocument:
-    """The file with its comments. Raises LogError if it is missing or not TOML."""
+    """Reads a TOML file with its comments. Raises LogError if the file is missing or not TOML."""
     try:
         return toml_file.read(path)
     except OSError as error:
@@ -221,7 +221,7 @@ _KINDS = {"string_type": "text", "float_type": "a number", "finite_number": "a f
 
 
 def _explain(error: ErrorDetails) -> str:
-    """The place of an error in a file, and the expected value, in words of TOML."""
+    """Describes an error in a configuration file: its place and the expected value."""
     what, where = error["type"], ".".join(map(str, error["loc"]))
     section, _, key = where.rpartition(".")
     if what == _MISSPELT:

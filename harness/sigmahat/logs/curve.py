@@ -1,4 +1,4 @@
-"""The measured points and the curve of an estimator: torque and stiffness against deformation."""
+"""Computes measured points and the curve of an estimator: torque and stiffness by deformation."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -23,15 +23,15 @@ NEEDED = (
     *("phi", "setPoint", "tau_e", "tau_e_residual", "epsilon", "a", "valid", "confident"),
     "change_age",
 )
-"""Outputs of the estimator from which points are computed."""
+"""Outputs of the estimator from which measured points are computed."""
 _GOLDEN = 0.6180339887498949
 _POINTS = 3000  # approximate number of points that are shown
 
 
 def since_change(outputs: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
-    """The outputs from the last change of the stiffness on: earlier outputs show another curve.
+    """Selects the outputs after the last change of the stiffness, which belong to one curve.
 
-    All outputs if there is no change, or if the regression has used no sample since.
+    Without a change, or without a used sample since the last change, all outputs are selected.
     """
     begins = restarts(outputs["change_age"])
     first = int(begins[-1]) if len(begins) and _used(outputs)[begins[-1] :].any() else 0
@@ -39,19 +39,19 @@ def since_change(outputs: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]
 
 
 def restarts(age: NDArray[np.float64], before: float = -1.0) -> NDArray[np.intp]:
-    """Indices at which the output change_age [s] starts again; before: its value before them."""
+    """Finds indices at which the output change_age [s] restarts; before: the preceding value."""
     last = np.concatenate([[before], age[:-1]])
     return np.flatnonzero((age >= 0) & ((age < last) | (last < 0)))
 
 
 def _used(outputs: Mapping[str, NDArray[Any]]) -> NDArray[np.bool_]:
-    """The ticks that the regression used."""
+    """Marks the ticks that the regression used."""
     return outputs["valid"].astype(bool) & (outputs["a"] > 0)
 
 
 @dataclass(frozen=True)
 class MeasuredPoints:
-    """Arrays of one size."""
+    """Measured points of the curve; all arrays have the same size."""
 
     phi: Array  # deformation [rad]
     set_point: Array  # [1]
@@ -59,13 +59,13 @@ class MeasuredPoints:
 
 
 def points_of(outputs: Mapping[str, NDArray[Any]], method: str) -> MeasuredPoints:
-    """The points at the ticks that the regression used.
+    """Computes the measured points at the ticks that the regression used.
 
     FilteredRegression filters all signals and estimates friction, inertia and bias with the curve.
-    Its prediction error is added to the torque of the curve, which gives a partial residual.
-    Paper2011 uses the residual itself as the measured torque.
+    The torque of a point is the torque of the curve plus the prediction error (partial residual).
+    With Paper2011, the torque of a point is the residual itself.
 
-    outputs  of the estimator by name, of one size
+    outputs  outputs of the estimator by name, of one size
     """
     used = _used(outputs)
     regression = method == "FilteredRegression"
@@ -74,10 +74,10 @@ def points_of(outputs: Mapping[str, NDArray[Any]], method: str) -> MeasuredPoint
 
 
 def shown_points(outputs: Mapping[str, NDArray[Any]], method: str) -> MeasuredPoints:
-    """The points of a curve: with FilteredRegression about 3000, from the first confident tick on.
+    """Selects points for a plot, with FilteredRegression about 3000 after the first confident tick.
 
-    Before this tick, friction and bias are not known, so the torques differ. Without a confident
-    tick, all points count.
+    Before the first confident tick, unknown friction and bias falsify the torques. Without a
+    confident tick, points of all ticks are selected.
     """
     if method != "FilteredRegression":
         return points_of(outputs, method)
@@ -88,9 +88,9 @@ def shown_points(outputs: Mapping[str, NDArray[Any]], method: str) -> MeasuredPo
 
 
 def spread(first: int, count: int, stride: int) -> NDArray[np.intp]:
-    """Indices of ticks first, first + 1 ..., one per stride, without a beat with the motion.
+    """Selects one tick of each stride, at varying places to avoid aliasing with the motion.
 
-    The chosen index of each stride does not depend on how a log is split.
+    The selected ticks do not depend on how a log is split into chunks from `first` on.
     """
     stretches = np.arange(first // stride, -(-(first + count) // stride))
     within = np.floor(stretches * _GOLDEN % 1 * stride).astype(np.intp)
@@ -99,7 +99,7 @@ def spread(first: int, count: int, stride: int) -> NDArray[np.intp]:
 
 
 def extremes(values: NDArray[Any], bucket: int) -> NDArray[Any]:
-    """Minimum and maximum of each bucket of values but nan, one behind the other."""
+    """Returns minimum and maximum of each bucket of values in turn; nan values are ignored."""
     starts = np.arange(0, len(values), bucket)
     return np.column_stack([f.reduceat(values, starts) for f in (np.fmin, np.fmax)]).ravel()
 
@@ -109,14 +109,14 @@ _UNITS = {"setPoint": "1", "phi": "rad", "tau_e": "N.m"}
 
 
 def write_points(points: MeasuredPoints, path: Path) -> None:
-    """Writes a row for each point."""
+    """Writes the measured points as CSV, one row for each point."""
     columns = (points.set_point, points.phi, points.tau_e)
     head = [title(name, unit) for name, unit in _UNITS.items()]
     write_csv(path, head, zip(*(column.tolist() for column in columns), strict=True))
 
 
 def read_points(path: Path) -> MeasuredPoints:
-    """Reads this file. Raises ValueError, which says what to do, for any other file."""
+    """Reads measured points. Raises ValueError with a remedy for a file without such points."""
     again = "run `sigmahat estimate` again"
     try:
         columns = numeric_columns(read_csv(path))
@@ -133,14 +133,14 @@ _OUTPUTS = ("tau_e", "tau_e_std", "sigma", "sigma_std", "sigma_per_gain", "phi",
 def stiffness_at(
     slave: Slave, names: Sequence[str], points: Array, t_0: float, T: float
 ) -> dict[str, Array]:
-    """The outputs _OUTPUTS at each point, by name, [size: points].
+    """Computes the outputs _OUTPUTS at each point from the present estimate, [size: points].
 
-    Before each point a sample is missing. After such a gap FilteredRegression uses no sample until
-    its filters have settled. Here the filters never settle, so the outputs depend only on the
-    earlier estimate. The slave cannot be used for anything else afterwards.
+    Before each point a sample is missing. After a gap, FilteredRegression uses no sample until its
+    filters have settled. Here the filters never settle, so the outputs depend only on the earlier
+    estimate. Afterwards the slave is not usable for an estimation.
 
-    slave   with the method FilteredRegression, at the time t_0 [s]
-    names   of inputs, theta and q included
+    slave   slave with the method FilteredRegression, at the time t_0 [s]
+    names   names of inputs, theta and q included
     points  values of these inputs, finite [size: points x names]
     T       samplePeriod [s]
     """
@@ -163,31 +163,31 @@ def stiffness_at(
 _FAMILY = 5  # set-points of a curve whose set-point moves
 _MOST_LEVELS = 7  # set-points of a curve whose set-point takes a few values
 _BINS, _WIDEST = 40, 3
-"""Parts of the range of the set-point, and the most neighbouring ones that are one level."""
+"""Number of bins of the set-point range, and largest number of adjacent bins of one level."""
 _FEW = 0.01
-"""Fraction of the points: where there are fewer, the set-point only passed on its way."""
+"""Smallest fraction of the points in a bin of a level; with fewer points, the set-point moved."""
 _AT_LEVELS = 0.9  # fraction of the points at levels, if the set-point takes a few values
 _OUTER = 0.1
-"""Percent of the points left out at either end: single wrong samples do not set the range."""
+"""Percentage of points left out at both ends, so that outliers do not determine the range."""
 
 
 class Reach(NamedTuple):
-    """A set-point [1], and the range of the deformations that were measured at it [rad]."""
+    """A set-point [1], and the range of the deformations measured at this set-point [rad]."""
 
     set_point: float
     phi: Range
 
 
 def reaches(points: MeasuredPoints, before: Sequence[LearnedLog], one_curve: bool) -> list[Reach]:
-    """Ranges of the data, from the points of a log and from logs that were learned before.
+    """Computes the ranges of the data from the points of a log and from earlier logs.
 
-    Only total ranges of the logs before are known, not the deformations at each set-point. So if
-    the set-point of such a log moved, its range counts only at set-points without own points.
+    Only total ranges of earlier logs are known, not the deformations at each set-point. If the
+    set-point moved in an earlier log, the range counts only at set-points without own points.
 
     one_curve  whether the curve is equal at all set-points
     """
     values = points.set_point
-    if len(values):  # without the outermost
+    if len(values):  # outliers are ignored
         least, most = _range(values)
         values = values[(values >= least) & (values <= most)]
     low = min([values.min(initial=np.inf), *(b.set_point[0] for b in before if b.set_point)])
@@ -219,7 +219,7 @@ def _range(values: Array) -> Range:
 
 
 def _settings(values: Array, low: float, high: float, one_curve: bool) -> list[float]:
-    """Set-points: levels of the data, else values evenly in the range."""
+    """Chooses set-points for the curve: levels of the data, else evenly spaced values."""
     if one_curve or not high - low > 1e-9 * max(abs(low), abs(high)):
         return [(low + high) / 2]
     if len(values) and low == values.min() and high == values.max():
@@ -235,20 +235,20 @@ def _settings(values: Array, low: float, high: float, one_curve: bool) -> list[f
 
 _WITHIN = 41  # number of points of a branch in the range of the data
 _BEYOND, _BEYOND_POINTS = 0.2, 8
-"""Part shown outside of either end, relative to the range, and the number of its points."""
+"""Extrapolation beyond each end, relative to the range, and its number of points."""
 
 
 def curve(
     slave: Slave, every: Mapping[str, Value], logs: Sequence[LearnedLog], points: MeasuredPoints
 ) -> Curve:
-    """Torque and stiffness against the deformation, at each set-point with data.
+    """Computes torque and stiffness by deformation, at each set-point with data.
 
     The slave does not change. With the method FilteredRegression, the curve has the standard
     deviations tau_e_std and sigma_std at each point.
 
     every   parameters of the slave
-    logs    from which the slave has learned; the last is the present log
-    points  of the last log
+    logs    logs that the slave has processed; the last is the present log
+    points  measured points of the last log
     """
     covered = union([log.phi for log in logs]), union([log.set_point for log in logs])
     polynomial = sheet.polynomial(sheet.start_values(slave, every), *covered)
@@ -270,13 +270,13 @@ def curve(
 
 
 def union(ranges: Sequence[Range | None]) -> Range | None:
-    """From the least to the largest value of all ranges; None without a range."""
+    """Returns the smallest range that contains all given ranges; None without a range."""
     found = [each for each in ranges if each is not None]
     return (min(low for low, _ in found), max(high for _, high in found)) if found else None
 
 
 def _grid(reach: Reach, polynomial: Polynomial) -> Array:
-    """Deformations of a branch: inside and outside of the range, and at printed points."""
+    """Chooses deformations of a branch inside and outside of the data range, and to be printed."""
     low, high = reach.phi
     further = _BEYOND * (high - low)
     odd = 0 not in polynomial.powers_of_phi
@@ -296,7 +296,7 @@ def _grid(reach: Reach, polynomial: Polynomial) -> Array:
 def _evaluated(
     slave: Slave, every: Mapping[str, Value], reach: Sequence[Reach], grids: Sequence[Array]
 ) -> dict[str, Array]:
-    """The outputs _OUTPUTS at each point of each grid, from a copy of the estimator."""
+    """Computes the outputs _OUTPUTS at each point of each grid, with a copy of the estimator."""
     scale, offset = float(every["setPoint.scale"]), float(every["setPoint.offset"])
     points = [
         (0.0, phi, (each.set_point - offset) / scale if scale else 0.0)
@@ -311,7 +311,7 @@ def _evaluated(
 
 @dataclass(frozen=True)
 class Answer:
-    """The result of a replay."""
+    """The result of a replay: curve, measured points, and doubt at the end."""
 
     curve: Curve  # torque and stiffness against the deformation
     points: MeasuredPoints  # measured points of the curve

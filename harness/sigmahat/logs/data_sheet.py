@@ -1,4 +1,4 @@
-"""The data sheet of the joint, from an estimator at the end of a replay."""
+"""Creates the data sheet of the joint, from an estimator at the end of a replay."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -25,9 +25,9 @@ UNITS = {
     "delay": "s",
     "hysteresis": "N.m",
 }
-"""Units of other estimates of FilteredRegression: output bias_hat, parameter prior.bias."""
+"""Units of the estimates of FilteredRegression besides the motor data, such as output bias_hat."""
 MOTOR = {"B": "kg.m2", "D_theta": "N.m.s/rad"}
-"""Units of the motor data: parameter motor.B, output B_hat."""
+"""Units of the motor data: B is parameter motor.B and output B_hat of the FMU."""
 WORDS = {
     "gamma": "gear ratio",
     "B": "inertia of the motor",
@@ -40,13 +40,13 @@ WORDS = {
     "delay": "delay of the torque",
     "hysteresis": "hysteresis",
 }
-"""What the parameters and the effects of the joint are, for people."""
+"""Descriptions of the parameters and the effects of the joint for users."""
 
 
 def priors(p: Mapping[str, Value]) -> dict[str, float]:
-    """Standard deviations of the priors of UNITS, in the units of the outputs; p as for exact()."""
+    """Computes standard deviations of the priors of UNITS, in the units of the FMU outputs."""
     tau_e, phi = float(p["prior.tau_e"]), float(p["range.phi"])
-    # Friction by load has two parts: by the torque of the spring, and by the torque of the motor.
+    # Load friction has two parts: one from the torque of the spring, one from the motor torque.
     by_load = math.sqrt(2) if p["prior.tau_coulomb"] else 1.0
     per_unit = {"bias": tau_e, "damping": tau_e / phi, "hysteresis": tau_e}
     per_unit["load_friction"] = by_load
@@ -54,14 +54,14 @@ def priors(p: Mapping[str, Value]) -> dict[str, float]:
 
 
 def exact(p: Mapping[str, Value]) -> Sequence[str]:
-    """Motor data that are taken as exact, of MOTOR; p: all parameters."""
+    """Returns the names of the motor data that are taken as exact; p: all parameters of the FMU."""
     if p["modality"] != "Residual":
         return []
     return [name for name in MOTOR if not float(p[f"motor.{name}"]) * float(p[f"prior.{name}"])]
 
 
 def absent(p: Mapping[str, Value]) -> Sequence[str]:
-    """Effects that are taken as absent: tau_coulomb, and names of UNITS."""
+    """Returns the effects that are taken as absent: tau_coulomb, and names of UNITS."""
     names = [name for name, std in priors(p).items() if not std]
     if p["modality"] == "Residual" and not p["prior.tau_coulomb"]:
         names.insert(0, "tau_coulomb")
@@ -73,7 +73,7 @@ _AMPLITUDE_95 = 2.4477
 
 
 def data_sheet(replay: Replay, curve: Curve) -> sheet.Sheet:
-    """The data sheet from an estimator at the end of a replay, and its curve."""
+    """Creates the data sheet from the estimator at the end of a replay, and from its curve."""
     slave, every, configuration = replay.slave, replay.every, replay.configuration.path
     identified = _identified(replay.configuration)
     last, doubt = replay.statistics.last, replay.statistics.last_doubt
@@ -115,7 +115,7 @@ def data_sheet(replay: Replay, curve: Curve) -> sheet.Sheet:
 
 
 def _points(curve: Curve) -> list[sheet.Stiffness]:
-    """The stiffness with its interval in the range of the data."""
+    """Returns points of the stiffness with 95 % intervals, in the range of the data."""
     found = []
     for branch in curve.branches:
         low, high = branch.stiffness_interval() or (branch.sigma, branch.sigma)
@@ -128,9 +128,9 @@ def _points(curve: Curve) -> list[sheet.Stiffness]:
 def _parameters(
     every: Mapping[str, Value], last: Mapping[str, float], identified: Mapping[str, Range]
 ) -> dict[str, sheet.Parameter]:
-    """Motor data, and other estimates of FilteredRegression.
+    """Returns the motor data and the other estimates of FilteredRegression, by name.
 
-    The FMU gives no intervals. An interval is from `identify`, if known, else from the prior. An
+    The FMU outputs no intervals. An interval is from `identify`, if known, else from the prior. An
     interval that does not contain the value of the estimator is made wider.
     """
     found = {"gamma": sheet.Parameter(float(every["motor.gamma"]), "1", None, "exact")}
@@ -149,7 +149,7 @@ def _parameters(
         unit = UNITS.get(name, "N.m") or "1"
         found[name] = _with_interval(last[f"{name}_hat"], unit, 0.0, std, identified.get(name))
     std, amplitude = stds["eccentric"], found["eccentric"]
-    if std:  # std of sine and cosine: the amplitude is not normal, and never below 0
+    if std:  # std of sine and cosine: the amplitude has a Rayleigh distribution, from 0 on
         most = max(_AMPLITUDE_95 * std, amplitude.value)
         found["eccentric"] = replace(amplitude, interval=(0.0, most))
     return found
@@ -166,7 +166,7 @@ def _with_interval(
 
 
 def _identified(configuration: Configuration) -> dict[str, Range]:
-    """Intervals that `identify` wrote into the file of the configuration."""
+    """Reads the intervals that `identify` wrote into the configuration file."""
     if not configuration.path.is_file():
         return {}
     own = joints.section(toml_file.read(configuration.path), configuration.joint)
@@ -175,7 +175,7 @@ def _identified(configuration: Configuration) -> dict[str, Range]:
     for name, row in rows.items() if isinstance(rows, dict) else ():
         keys = ("value", "half_width") if isinstance(row, dict) else ()
         pair: list[Any] = [row.get(key) for key in keys]
-        # A text stands for "cannot tell".
+        # A text instead of a number means that identify found no value.
         if pair and all(isinstance(each, float) and math.isfinite(each) for each in pair):
             found[name] = (pair[0] - pair[1], pair[0] + pair[1])
     return found

@@ -69,7 +69,7 @@ class Estimate:
     curve: Curve  #: Torque and stiffness against the deformation.
     changes: Sequence[StiffnessChange]  #: Changes that were detected.
     notes: Sequence[str]  #: Sentences about the processing of the samples of the log.
-    learned_from: Sequence[str] = ()  #: Logs from which the estimator has learned before this log.
+    learned_from: Sequence[str] = ()  #: Earlier logs that the estimator has processed.
     series: Series | None = None
     """The outputs at each tick; None if they were written into a folder."""
 
@@ -79,7 +79,7 @@ class Estimate:
         return headline(self.curve, self.doubt_at_end)
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON; units are in the names."""
+        """Returns the result as a dictionary for JSON; names of the keys contain units."""
         return {
             "answer": self.headline,
             "log": str(self.log),
@@ -210,7 +210,7 @@ _NEGLIGIBLE = 0.1  # fraction of the standard deviation of a prior: smaller esti
 
 
 def summary(result: Estimate) -> str:
-    """The result as a text of one screen."""
+    """Formats the result as text that fits on one screen."""
     p = result.parameters
     std = "for which the method gives no standard deviation"
     if p["method"] == "FilteredRegression":
@@ -250,7 +250,7 @@ def _second_half(result: Estimate) -> Iterator[str]:
 
 
 def _found(result: Estimate) -> Iterator[str]:
-    """Other estimates of FilteredRegression, unless an estimate is negligible."""
+    """Formats the motor data and all estimates of FilteredRegression that are not negligible."""
     motor = result.motor
     yield (
         f"motor data found: B = {motor['B_hat']:.4g} kg.m2, D_theta = "
@@ -265,7 +265,7 @@ def _found(result: Estimate) -> Iterator[str]:
 
 
 JOINTS = "joints.csv"
-"""A table with rows for each joint of a log, besides the folders of the joints."""
+"""Name of the table with rows for each joint of a log, next to the folders of the joints."""
 _TITLES = (
     *("joint", "setPoint", "phi [rad]", "sigma [N.m/rad]", "sigma low [N.m/rad]"),
     *("sigma high [N.m/rad]", "confident"),

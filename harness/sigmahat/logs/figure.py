@@ -1,4 +1,4 @@
-"""The figure of a replay: the curve, and stiffness, torque, deformation, set-point over time."""
+"""Draws the figure of a replay: the curve, and the stiffness and other signals over time."""
 
 from typing import Any
 
@@ -17,7 +17,7 @@ _MOST = 200  # stretches of ticks that the estimator skipped: only the longest a
 
 
 def draw(replay: Replay, answer: Answer) -> Figure:
-    """The curve, and below the curve panels against the time since the start of the log."""
+    """Draws the curve, and below the curve panels over the time since the start of the log."""
     panels = _over_time(replay)
     figure = Figure(figsize=(8.4, 4.2 + 2.2 * len(panels)), layout="constrained")
     parts: Any = figure.subfigures(2, height_ratios=[4.0, 2.2 * len(panels) + 0.2])
@@ -47,7 +47,7 @@ def draw(replay: Replay, answer: Answer) -> Figure:
 
 
 def _over_time(replay: Replay) -> list[Panel]:
-    """The panels of the report, from the least and the greatest value of each interval."""
+    """Creates the panels of the report from the minimum and maximum of each time interval."""
     statistics, samples = replay.statistics, replay.samples
     signals = {name: statistics.ends(name) for name in DRAWN}
     if replay.method != "FilteredRegression":

@@ -1,4 +1,4 @@
-"""A log that is replayed through one estimator: its steps, and what its outputs show as a whole."""
+"""Replays a log through one estimator, and collects statistics of the outputs."""
 
 from collections import Counter
 from collections.abc import Callable, Mapping
@@ -37,32 +37,32 @@ DRAWN = ("sigma", "sigma_std", "tau_e", "tau_e_residual", "phi", "setPoint")
 
 
 def _wider(known: Range, values: Array) -> Range:
-    """The range of what is known and of further values."""
+    """Extends a known range so that the range contains further values."""
     return min(known[0], float(values.min())), max(known[1], float(values.max()))
 
 
 class ReplayStatistics:
-    """Extrema of each output in up to 4000 intervals, and statistics of the second half.
+    """Collects extrema of each output in up to 4000 intervals, and statistics of the second half.
 
-    The minima and maxima give the same picture as all values, and their number does not grow with
-    the log.
+    A plot of minima and maxima looks like a plot of all values. The number of extrema does not grow
+    with the log.
     """
 
     def __init__(self, ticks: int) -> None:
         self.bucket = -(-ticks // _BUCKETS)
-        """Ticks in an interval; each chunk but the last must be a multiple of this number."""
+        """Ticks per interval; the length of each chunk but the last must be a multiple of it."""
         self._parts: dict[str, list[Array]] = {name: [] for name in DRAWN}
         self._half = ticks // 2
         self.ticks = self._later = self.skipped = 0
         self._doubts: Counter[str] = Counter()
         self._squares = 0.0
         self.later = dict.fromkeys(DRAWN, _NOTHING)
-        """Minimum and maximum in the second half of the log, by output."""
+        """Minimum and maximum of each output in the second half of the log, by output."""
         self.used: dict[str, Range] = {}
-        """Range of phi and setPoint at the samples that the regression used, if any."""
+        """Ranges of phi and setPoint at the samples that the regression used, if any."""
         self._stride = -(-ticks // _POINTS)
         self.points: dict[str, list[np.ndarray[Any, Any]]] = {name: [] for name in NEEDED}
-        """Parts of the outputs NEEDED of up to 20000 ticks, evenly over the log."""
+        """Values of the outputs NEEDED at up to 20000 ticks, evenly distributed in the log."""
         self.last: dict[str, float] = {}  # Real outputs of the last tick
         self.last_doubt = ""  # item of the output doubt at the last tick
 
@@ -91,12 +91,12 @@ class ReplayStatistics:
             self.used[name] = _wider(self.used.get(name, _NOTHING), outputs[name][learning])
 
     def ends(self, name: str) -> Array:
-        """Minimum and maximum in each interval, one behind the other [size: 2 intervals]."""
+        """Returns minimum and maximum of an output in each interval [size: 2 intervals]."""
         return np.concatenate(self._parts[name])
 
     @property
     def doubts(self) -> dict[str, float]:
-        """Fraction of the ticks in the second half by item of the output doubt, largest first."""
+        """Fractions of the ticks in the second half, by item of the output `doubt`, sorted."""
         ticks = self._doubts.total()
         return {item: count / ticks for item, count in self._doubts.most_common()}
 
@@ -108,39 +108,39 @@ class ReplayStatistics:
 
 @dataclass(frozen=True)
 class StiffnessChange:
-    """A change, and its size at the deformation and set-point at which it was detected."""
+    """A detected change of the stiffness, with time and relative size."""
 
     t: float  # time since the start of the log [s]
     relative: float | None
     """Relative difference between the last confident estimates before this change and before the
-    next change [1]; None without both estimates."""
+    next change [1], at the detected deformation and set-point; None without both estimates."""
 
     @property
     def in_words(self) -> str:
-        """A sentence."""
+        """Sentence about the change for the user."""
         if self.relative is None:
             return f"the stiffness changed at {self.t:.4g} s, by how much is not known"
         return f"the stiffness changed by {100 * self.relative:+.0f} % at {self.t:.4g} s"
 
 
 class Changes:
-    """Collects the changes from the outputs of a replay.
+    """Collects changes of the stiffness from the outputs of a replay.
 
-    The estimator may start again several times before it follows a change. So a further change
-    counts only after a confident estimate since the last change.
+    The estimator may start again several times before the estimate follows a change. A further
+    change counts only after a confident estimate since the last change.
     """
 
     def __init__(self, every: Mapping[str, Value], T: float) -> None:
         """every  parameters of the estimator"""
         n, m = int(every["rls.n"]), int(every["rls.m"])
         self.names = [f"eta[{i},{j}]" for i in range(n) for j in range(m)]
-        """Outputs that are needed besides change_age, confident, phi and setPoint."""
+        """Names of the required outputs besides change_age, confident, phi and setPoint."""
         self._powers = np.repeat(powers_of_phi(bool(every["rls.symmetric"]), n), m)
         self._powers_of_set_point = np.tile(np.arange(m), n)
         self._T, self._ticks, self._age, self._followed = T, 0, -1.0, True
         self._eta: NDArray[np.float64] | None = None  # at the last confident tick since a change
         self._at = 0.0, 0.0  # deformation and set-point of the last change
-        self._before: float | None = None  # the stiffness at this point
+        self._before: float | None = None  # stiffness before the last change, at this point
         self.found: list[StiffnessChange] = []  # all changes until now
 
     def add(self, outputs: Mapping[str, NDArray[Any]]) -> None:
@@ -163,13 +163,13 @@ class Changes:
         self._ticks, self._age = self._ticks + len(age), float(age[-1])
 
     def _stiffness(self, eta: NDArray[np.float64]) -> float:
-        """The stiffness by (21) at the point of the last detected change [N.m/rad]."""
+        """Computes the stiffness by (21) at the point of the last detected change [N.m/rad]."""
         (phi, set_point), p = self._at, self._powers
         slopes = p * np.power(phi, np.maximum(p - 1, 0))
         return float(eta @ (slopes * np.power(set_point, self._powers_of_set_point)))
 
 
-_CHUNK = 1 << 15  # ticks that are replayed at a time, about, and rows of a group in Parquet
+_CHUNK = 1 << 15  # approximate number of ticks per chunk, and of rows per group in Parquet
 
 
 class Replay:
@@ -178,7 +178,7 @@ class Replay:
     def __init__(
         self, slave: Slave, log: Log, configuration: Configuration, learned: Learned | None = None
     ) -> None:
-        """Initialises the slave, restores the learned state in it, and samples the log.
+        """Initialises the slave, restores the state from earlier logs, and samples the log.
 
         Raises LogError if log or state do not fit the configuration, FmuError if the FMU refuses.
         """
@@ -187,7 +187,7 @@ class Replay:
         self.every = slave.fmu.parameters(start)  # all parameters of the estimator
         configuration.need_ports(str(self.every["modality"]))
         slave.initialize(start)
-        # Before the log is read, because the learned state may not fit.
+        # The state is restored before the log is read, because this step may fail.
         self.t = 0.0 if learned is None else go_on(slave, learned, self.every, configuration.path)
         """Present time of the estimator [s]."""
         self.samples = sample(log, configuration, float(self.every["samplePeriod"]))
@@ -196,7 +196,7 @@ class Replay:
         """Changes of the stiffness in the replayed part of the log."""
         self.method = str(self.every["method"])  # method of the estimator
         self.logs = [] if learned is None else list(learned.logs)
-        """Logs from which the estimator has learned; at the end also the present log."""
+        """Logs that the estimator has processed; at the end also the present log."""
 
     def run(
         self,
@@ -204,8 +204,8 @@ class Replay:
         progress: Callable[[int], object] = lambda thousandths: None,
         digest: str = "",
     ) -> None:
-        """Plays all samples; `add` is given the outputs, `progress` the thousandths since its last
-        call. digest is the SHA-256 of the log for the record.
+        """Replays all samples; calls `add` with outputs, and `progress` with thousandths since the
+        last call. The argument digest is the SHA-256 of the log, which is stored with the state.
         """
         statistics, ticks, done = self.statistics, len(self.samples.values), 0
         of_curve = self.changes.names
@@ -225,7 +225,7 @@ class Replay:
         self.logs.append(LearnedLog(file, digest, ticks, statistics.skipped, phi, set_point))
 
     def answer(self) -> Answer:
-        """The curve and its measured points, at the end."""
+        """Computes the curve and its measured points at the end of the replay."""
         parts = self.statistics.points.items()
         outputs = since_change({name: np.concatenate(of_chunks) for name, of_chunks in parts})
         found = curve(self.slave, self.every, self.logs, points_of(outputs, self.method))

@@ -1,7 +1,7 @@
-"""A configuration of several joints: common values stand once, other values in joints' sections.
+"""Splits and combines configurations of several joints, in which common values stand only once.
 
-docs/how-to-log.md has an example. A configuration of one joint has no section [joints], and its
-joint has the name "".
+docs/how-to-log.md has an example. A configuration of one joint has no section [joints], and the
+name of the joint is "".
 """
 
 import re
@@ -16,14 +16,14 @@ from sigmahat.files import toml_file
 
 JOINTS = "joints"  # name of the section
 Place = tuple[str, ...]
-"""Sections and key of a value: ("ports", "q", "unit"), ("parameters", "motor.B")."""
+"""Sections and key of a TOML value: ("ports", "q", "unit"), ("parameters", "motor.B")."""
 _NAME = re.compile(r"\w[\w.-]*")
 
 
 def names(document: Mapping[str, Any]) -> list[str]:
-    """The joints of a document, [""] for a configuration of one joint.
+    """Returns the names of the joints in a document, [""] for a configuration of one joint.
 
-    Raises ValueError for a name that a folder cannot have.
+    Raises ValueError for a name of a joint that is not allowed as the name of a folder.
     """
     joints = document.get(JOINTS)
     if not isinstance(joints, Mapping) or not joints:
@@ -39,7 +39,7 @@ def names(document: Mapping[str, Any]) -> list[str]:
 
 
 def of_joint(document: tomlkit.TOMLDocument, name: str) -> tomlkit.TOMLDocument:
-    """The configuration of one joint, with its comments; the document is unchanged."""
+    """Copies the configuration of one joint, with comments, from the document of all joints."""
     own = tomlkit.parse(tomlkit.dumps(document))
     if name:
         of_the_joint = items(own, name)
@@ -50,9 +50,9 @@ def of_joint(document: tomlkit.TOMLDocument, name: str) -> tomlkit.TOMLDocument:
 
 
 def together(joints: Mapping[str, tomlkit.TOMLDocument]) -> tomlkit.TOMLDocument:
-    """One document for the configurations of several joints: common values stand once.
+    """Combines the configurations of several joints; common values stand once in the document.
 
-    Comments on lines of their own are from the first joint.
+    Comments on separate lines are taken from the configuration of the first joint.
     """
     first = next(iter(joints.values()))
     values = [items(each) for each in joints.values()]
@@ -77,13 +77,13 @@ def together(joints: Mapping[str, tomlkit.TOMLDocument]) -> tomlkit.TOMLDocument
 
 
 def section(document: tomlkit.TOMLDocument, name: str) -> MutableMapping[str, Any]:
-    """The table with the keys of a joint: its section, or the whole document for the joint ""."""
+    """Returns the section of a joint in a document; for the joint "" the whole document."""
     found: MutableMapping[str, Any] = document
     return found[JOINTS][name] if name else found
 
 
 def items(document: tomlkit.TOMLDocument, joint: str = "") -> dict[Place, Item]:
-    """Every value with its comment, in the order of the document.
+    """Returns every TOML value with its comment, in the order of the document.
 
     joint  only values in the section of this joint, with places relative to the section
     """
@@ -95,7 +95,7 @@ def items(document: tomlkit.TOMLDocument, joint: str = "") -> dict[Place, Item]:
 
 
 def _items(container: Container, above: Place) -> Iterator[tuple[Place, Item]]:
-    # Not container.items(), which gives true and false without their comments.
+    # The method container.items() would return true and false without their comments.
     for key, item in container.body:
         if key is None:
             continue
@@ -109,11 +109,11 @@ def _items(container: Container, above: Place) -> Iterator[tuple[Place, Item]]:
 
 
 def set_item(document: MutableMapping[str, Any], place: Place, item: Item) -> None:
-    """Sets a value; the sections above it are made if they are missing."""
+    """Sets a value in a TOML document, and creates missing sections around the value."""
     *above, name = place
     table: Any = document
     for depth, each in enumerate(above):
-        # A table with tables only has no header of its own.
+        # A TOML table that contains only tables needs no header.
         is_super = len(above) > depth + 1
         if each not in table:
             table[each] = tomlkit.table(is_super_table=is_super)
@@ -122,7 +122,7 @@ def set_item(document: MutableMapping[str, Any], place: Place, item: Item) -> No
 
 
 def remove(document: MutableMapping[str, Any], place: Place) -> None:
-    """Removes a value, and its dotted group if the group becomes empty."""
+    """Removes a value from a TOML document, and the dotted group if the group becomes empty."""
     *above, name = place
     table: Any = document
     for each in above:

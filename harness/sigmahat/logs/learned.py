@@ -1,7 +1,7 @@
-"""`state.json`: the state of the estimator after a log, to continue with the next log.
+"""Writes and reads `state.json`: the estimator state after a log, to continue with the next log.
 
-The JSON file has the identity of the FMU, the logs, and the state of the FMU from
-fmi2SerializeFMUstate, in base64. The state contains the parameters of the estimator.
+The JSON file contains the identity of the FMU, the logs, and the state from fmi2SerializeFMUstate
+in base64. The FMU state contains the parameters of the estimator.
 """
 
 import base64
@@ -24,17 +24,17 @@ _OTHER = f"both must have the same parameters: change the configuration, or {_AG
 
 @dataclass(frozen=True)
 class Learned:
-    """The contents of the file."""
+    """The contents of `state.json` that are needed to continue an estimation."""
 
     path: Path  # path of the file
     fmu: FmuId  # identity of the FMU of the state
-    logs: Sequence[LearnedLog]  # logs from which the FMU has learned, in this order
+    logs: Sequence[LearnedLog]  # logs that the FMU has processed, in this order
     state: bytes  # state of the FMU
 
 
 @dataclass(frozen=True)
 class _File:
-    """The form of the file."""
+    """The schema of the JSON file `state.json`."""
 
     __pydantic_config__ = NO_OTHER_KEYS
 
@@ -54,7 +54,7 @@ LEARNED = Format("state.json", "sigmahat learned state", 1, _File)  # format of 
 def write_learned(
     slave: Slave, every: Mapping[str, Value], logs: Sequence[LearnedLog], path: Path
 ) -> None:
-    """Writes the state of a slave after its logs; `every` has the parameters of the slave."""
+    """Writes the state of a slave after the logs; `every` contains the parameters of the slave."""
     contents = _File(
         format=LEARNED.name,
         version=LEARNED.version,
@@ -69,9 +69,9 @@ def write_learned(
 
 
 def read_learned(path: Path) -> Learned:
-    """Reads a file, or the file in a folder of results.
+    """Reads `state.json`, given as the file or as a folder of results.
 
-    Raises LogError, which says what was expected, if the file is missing or damaged.
+    Raises LogError, which names the expected contents, if the file is missing or damaged.
     """
     try:
         file = LEARNED.read(path)
@@ -86,13 +86,13 @@ def read_learned(path: Path) -> Learned:
 
 
 def go_on(slave: Slave, learned: Learned, every: Mapping[str, Value], configuration: Path) -> float:
-    """Gives an initialised slave the learned state. Filters start again with the next sample.
+    """Restores a saved state in an initialised slave. Filters start again with the next sample.
 
     every          parameters of the slave
-    configuration  the file of these parameters, for messages
+    configuration  the file that contains these parameters, for messages
 
-    Returns the present time of the slave [s]. Raises LogError if the state is of another FMU,
-    is damaged, or was learned with other parameters.
+    Returns the present time of the slave [s]. Raises LogError if the state is damaged, or is the
+    state of another FMU or with other parameters.
     """
     theirs, ours = learned.fmu, FmuId.of(slave.fmu)
     if theirs != ours:

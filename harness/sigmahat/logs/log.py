@@ -1,8 +1,8 @@
-"""A recorded log, whatever its file format: columns of numbers by name, and limits for them.
+"""Defines a recorded log, independent of the file format, and limits for the size of the columns.
 
-Some kilobytes of a compressed file can become many gigabytes, which must not fill the memory.
-Recorded data are far from this ratio. Each limit has a lower bound, so that no limit concerns a
-file of usual size.
+A compressed file of some kilobytes can expand to many gigabytes, which would fill the memory.
+Recorded data never compress so strongly. Each limit has a lower bound, so that a file of usual size
+is always accepted.
 """
 
 from abc import ABC, abstractmethod
@@ -18,13 +18,13 @@ from sigmahat.fmi.unknown_name import unknown
 
 
 class LogError(ValueError):
-    """The message says in one line where the error is, what was expected, and what to do."""
+    """An error in a log. The message states in one line the place, the expectation, the remedy."""
 
 
 Array = NDArray[np.float64]
 _NO_TEXT = r"^\s*([+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?(?i:nan|inf|infinity))?\s*$"
-"""An empty cell, or a number in the notation of Python."""
-_SHOWN = 100  # characters of a text
+"""Pattern of an empty cell, or of a number in the notation of Python."""
+_SHOWN = 100  # characters of a cell that an error message shows
 _PER_SECOND = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}  # units of timestamps
 EXACT = 2**53  # largest magnitude up to which a float64 holds every integer
 
@@ -38,11 +38,11 @@ class Log(ABC):
         self.notes: list[str] = []  #: Sentences about the reading of the file.
 
     def read(self, name: str) -> Array:
-        """One column, [size: samples]; nan where a sample is missing.
+        """Reads one column [size: samples]; nan where a sample is missing.
 
-        Dates and times become seconds since the first row; integers beyond 2^53, such as
+        Dates and times become seconds since the first row. Integers beyond 2^53, such as
         nanoseconds since 1970, are counted from the first value. Raises LogError for an unknown
-        column, or for a column with something other than numbers.
+        column, or for a column that does not contain numbers.
         """
         self.samples(name)
         values = self._read(name)
@@ -57,11 +57,11 @@ class Log(ABC):
 
     @abstractmethod
     def _read(self, name: str) -> Array:
-        """As read, for a column that exists."""
+        """Reads one column for read(), which has checked that the column exists."""
 
     @abstractmethod
     def batches(self, names: Sequence[str], rows: int) -> Iterator[pa.RecordBatch]:
-        """Columns of one length as they are in the file, at most a number of rows at a time."""
+        """Yields columns of equal length unconverted, at most `rows` rows at a time."""
 
 
 class LogInMemory(Log):
@@ -85,7 +85,7 @@ class LogInMemory(Log):
 
 
 def numbers(path: Path, name: str, column: pa.ChunkedArray) -> Array:
-    """An Arrow column as Log.read returns it. Raises LogError if it does not hold numbers."""
+    """Converts an Arrow column for Log.read(). Raises LogError for a column without numbers."""
     kind = column.type
     if pa.types.is_timestamp(kind):
         ticks = column.cast(pa.int64())
@@ -110,25 +110,25 @@ def numbers(path: Path, name: str, column: pa.ChunkedArray) -> Array:
 
 
 def first_text(column: pa.ChunkedArray) -> tuple[int, str] | None:
-    """Row, from 1 on, and start of the first cell that is no number; None if all are numbers."""
+    """Finds the first cell that is no number: row, from 1 on, and text; None if there is none."""
     is_text = pa.compute.invert(pa.compute.match_substring_regex(column, _NO_TEXT))
     row = pa.compute.index(is_text, True).as_py()
     return None if row < 0 else (row + 1, column[row].as_py()[:_SHOWN])
 
 
 def holds_text(path: Path, name: str, row: int, text: str) -> LogError:
-    """The error for a column with text in this row."""
+    """Creates the error for a column that contains text in the given row."""
     return LogError(f"{path}: column {name!r} holds text ({text!r} in row {row}), expected numbers")
 
 
 def fits_float64(column: pa.ChunkedArray) -> bool:
-    """Whether a float64 holds every integer of a column: nanoseconds since 1970 do not fit."""
+    """Returns whether a float64 holds every integer of a column, unlike nanoseconds since 1970."""
     ends = pa.compute.min_max(column).as_py()
     return ends["min"] is None or max(abs(ends["min"]), abs(ends["max"])) <= EXACT
 
 
 def is_number(text: str) -> bool:
-    """Whether a text is a number in the notation of Python."""
+    """Returns whether a text is a number in the notation of Python."""
     try:
         float(text)
     except ValueError:
@@ -138,21 +138,21 @@ def is_number(text: str) -> bool:
 
 MOST_COLUMNS = 2000
 _NUMBERS, _SMALL = 15_000_000, 10_000_000  # allowed numbers in a file up to this size [bytes]
-_TOGETHER = 2  # factor for all columns together, where they are needed at the same time
+_TOGETHER = 2  # factor of the limit if all columns are in memory at the same time
 _NUMBERS_PER_BYTE = 3  # limit for further bytes; without compression, at most 1 is possible
 _BYTES = 400_000_000  # limit for all columns of a file that is read as a whole
 MOST_TEXT = 100_000_000  # characters of a column of text at a time
 
 
 def _most_numbers(path: Path) -> int:
-    """How many numbers a column of a file may hold."""
+    """Returns the allowed number of values in a column of a file, by the size of the file."""
     files = path.iterdir() if path.is_dir() else (path,)  # the folder of a bag
     size = sum(file.stat().st_size for file in files)
     return _NUMBERS + _NUMBERS_PER_BYTE * max(0, size - _SMALL)
 
 
 def check_together(path: Path, numbers: int) -> None:
-    """Raises LogError for more numbers than all columns that are compared may hold."""
+    """Raises LogError for too many numbers in all columns together, which share the memory."""
     # For fewer numbers, the size of the file does not matter.
     if numbers > _TOGETHER * _NUMBERS and numbers > (most := _TOGETHER * _most_numbers(path)):
         raise LogError(
@@ -171,8 +171,8 @@ def check_columns(path: Path, columns: int) -> None:
 
 
 def check_numbers(path: Path, numbers: int) -> None:
-    """Raises LogError for more numbers than a file of this size may hold."""
-    # For fewer numbers, the file, which may have vanished, does not matter.
+    """Raises LogError for more numbers in a column than the size of the file allows."""
+    # For fewer numbers, the size of the file is not needed: the file may be deleted already.
     if numbers > _NUMBERS and numbers > _most_numbers(path):
         raise LogError(
             f"{path}: expected at most {_most_numbers(path)} numbers in a file of this size, got "
@@ -181,7 +181,7 @@ def check_numbers(path: Path, numbers: int) -> None:
 
 
 def check_bytes(path: Path, size: int) -> None:
-    """Raises LogError for more bytes than all columns that are read at once may take."""
+    """Raises LogError if columns that are read at once would need too much memory [bytes]."""
     most = max(_BYTES, 8 * _most_numbers(path))
     if size > most:
         raise LogError(

@@ -1,8 +1,8 @@
 """Writes and reads the table of `sigmahat estimate` and its notes; writes estimates as messages.
 
-A CSV log gives `estimate.csv`, every other log `estimate.parquet`: the log with the estimates. The
-titles of the estimates are "estimate.sigma [N.m/rad]" and so on; "estimate.t [s]" is the time of
-the tick since the start of the log. `estimate.json` has data that no other file of the folder has.
+The table has the columns of the log and the estimates: `estimate.csv` for a CSV log, else
+`estimate.parquet`. Estimates have titles such as "estimate.sigma [N.m/rad]". "estimate.t [s]" is
+the time of the tick since the start of the log. `estimate.json` has the notes on the replay.
 
 In Parquet the estimates are float32, rounded to five digits: three or four digits are accurate. The
 columns of the log are unchanged. Times are float64, because times of hours need more digits.
@@ -37,17 +37,17 @@ from sigmahat.logs.sampling import Samples
 _ROWS = 1 << 15
 _STEM = "estimate"
 _PREFIX = "estimate."
-_REPEATED = 2  # rows per distinct value, from which a dictionary is shorter
+_REPEATED = 2  # with more rows per distinct value, a dictionary in Parquet is shorter
 _TIME = "t"
 _TIMES = (_TIME, "change_age")
 _DOUBT, _VALID = "doubt", "valid"  # a text, and a flag
 
 
 class EstimateWriter(AbstractContextManager["EstimateWriter"]):
-    """Writes every row of the log with the outputs of the last tick at or before it."""
+    """Writes every row of the log with the outputs of the last tick at or before the row."""
 
     def __init__(self, log: Log, samples: Samples, units: Mapping[str, str], folder: Path) -> None:
-        """units  of the outputs that have a unit, by name"""
+        """units  units of the outputs that have a unit, by name of the output"""
         self._dialect = log.dialect if isinstance(log, CsvLog) else None
         self._path = folder / f"{_STEM}.{'csv' if self._dialect else 'parquet'}"
         self._units = {_TIME: "s", **units}
@@ -64,7 +64,7 @@ class EstimateWriter(AbstractContextManager["EstimateWriter"]):
     def add(self, outputs: Mapping[str, NDArray[Any]]) -> None:
         """Writes the rows of the next ticks, with the outputs of these ticks."""
         ticks = len(next(iter(outputs.values())))
-        # An int32 as in the array: for another type, the whole array would be converted.
+        # The type is int32 as in the array: numpy would convert the whole array to another type.
         end = int(np.searchsorted(self._tick_of_row, np.int32(self._tick + ticks)))
         take = self._tick_of_row[self._row : end] - self._tick
         count = end - self._row
@@ -89,7 +89,7 @@ class EstimateWriter(AbstractContextManager["EstimateWriter"]):
         self._written = self._thread.submit(self._writer.write_table, table)
 
     def _finish(self) -> None:
-        """Waits for the last table. Raises the error of its writing, if any."""
+        """Waits until the last table is written. Raises the error of this writing, if any."""
         if self._written is not None:
             self._written.result()
             self._written = None
@@ -114,18 +114,18 @@ class EstimateWriter(AbstractContextManager["EstimateWriter"]):
 
 
 def _rounded(values: NDArray[np.float64]) -> NDArray[np.float32]:
-    """The nearest numbers with 16 bits after the leading bit. The other bits are noise, and would
-    be a third of the file.
+    """Rounds numbers to 16 bits after the leading bit. The other bits are noise, which would take
+    a third of the file.
     """
     bits = values.astype(np.float32).view(np.uint32)
     return ((bits + 0x40) & 0xFFFFFF80).view(np.float32)
 
 
 def _is_split(name: str, column: pa.ChunkedArray) -> bool:
-    """Whether the file gets the numbers of a column byte by byte: their first bytes change slowly.
+    """Returns whether Parquet stores a column as byte streams, which suits smooth signals.
 
-    Measured numbers that were written in decimals and read again have all their bytes at random,
-    but few values. An estimate may begin with one value for a while.
+    Measured numbers that were once decimal text have random bytes, but few distinct values. An
+    estimate may begin with many equal values.
     """
     if pa.types.is_integer(column.type):
         return True
@@ -136,7 +136,7 @@ def _is_split(name: str, column: pa.ChunkedArray) -> bool:
 
 
 def _with_commas(table: pa.Table) -> pa.Table:
-    """A table whose numbers are texts with decimal commas."""
+    """Converts the numbers of a table to text with decimal commas."""
     for i, field in enumerate(table.schema):
         if pa.types.is_floating(field.type):
             text = pa.compute.replace_substring(table.column(i).cast(pa.string()), ".", ",")
@@ -154,8 +154,8 @@ def mcap_file(
 ) -> Iterator[Callable[[Mapping[str, NDArray[Any]]], None]]:
     """Yields a function that writes a message for each of the next ticks, which are T [s] apart.
 
-    Messages are JSON of the topic /estimate, for Foxglove and PlotJuggler. Their schema has
-    unit and description of each field. Times count from the start of the log.
+    Messages are JSON of the topic /estimate, for Foxglove and PlotJuggler. The schema of the
+    messages has unit and description of each field. Times count from the start of the log.
     """
     from mcap.writer import Writer
 
@@ -182,7 +182,7 @@ def mcap_file(
 
 
 class EstimateTable(Mapping[str, NDArray[np.float64]]):
-    """The outputs that `sigmahat estimate` wrote into a folder, by name, as numbers; true is 1.
+    """Reads the outputs that `sigmahat estimate` wrote into a folder, by name; true is 1.
 
     A column is read at each access: all columns of a long log together do not fit the memory.
     """
@@ -205,7 +205,7 @@ class EstimateTable(Mapping[str, NDArray[np.float64]]):
         del self._titles[_DOUBT]
         self.t = self._log.read(self._titles.pop(_TIME))  # times of the rows [s]
         self.used = self._log.read(self._titles.pop(_VALID)).astype(np.bool_)
-        """Whether the estimator used a row: its output valid."""
+        """Output `valid` for each row: whether the estimator used the row."""
 
     def __getitem__(self, name: str) -> NDArray[np.float64]:
         return self._log.read(self._titles[name])
@@ -219,7 +219,7 @@ class EstimateTable(Mapping[str, NDArray[np.float64]]):
 
 @dataclass(frozen=True)
 class Replayed:
-    """The contents of the file."""
+    """The contents of `estimate.json`."""
 
     __pydantic_config__ = NO_OTHER_KEYS
 

@@ -1,4 +1,4 @@
-"""Panels of a replay: the curve, and over time the stiffness and what it is computed from."""
+"""Creates the panels of a replay: the curve, the stiffness over time, and other signals."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -12,28 +12,28 @@ from sigmahat.logs.curve import MeasuredPoints, extremes
 from sigmahat.plotting.panels import COLORS, TRUE, Curve, Panel
 from sigmahat.plotting.style import QUANTITIES, around, limits, plain_axis, with_margin
 
-BUDGET = 400_000  # values of all signals together; as 4 bytes in base64 they are 2 MB of a report
-_MOST = 20_000  # values of a signal; a browser takes seconds to draw longer lines
+BUDGET = 400_000  # largest number of values of all signals, which take 2 MB of a report
+_MOST = 20_000  # largest number of values of a signal; a browser draws longer lines too slowly
 
 
 @dataclass(frozen=True)
 class Reduced:
-    """Signals at common times."""
+    """Signals at common times, reduced for a plot."""
 
     t: NDArray[np.float64]
     signals: dict[str, NDArray[Any]]  # signals, with the shape of t
     bucket: int
     """Number of samples from which minimum and maximum are kept; 1: every sample is kept."""
     whole: tuple[float, float] | None = None
-    """Between these times every sample is kept, although the others are reduced."""
+    """Start and end of the time interval in which every sample is kept."""
 
 
 def reduce(t: NDArray[Any], signals: Mapping[str, NDArray[Any]], budget: int = BUDGET) -> Reduced:
-    """Keeps at most about budget values of all signals, and 20000 of each.
+    """Reduces signals to about `budget` values in total, and at most 20000 values of each signal.
 
-    Of a longer signal, half of the kept values are all samples around the middle, where single
-    counts of an encoder show. The other half are minimum and maximum of each bucket, at its first
-    time. Time t and the signals have the same shape (N,), N >= 1.
+    From a longer signal, half of the kept values are all samples around the middle, where single
+    encoder counts are visible. The other half are minimum and maximum of each bucket, at the first
+    time of the bucket. Time t and the signals have the same shape (N,), N >= 1.
     """
     half = min(max(budget // max(len(signals), 1), 8), _MOST) // 2
     t = np.asarray(t, dtype=np.float64)
@@ -44,7 +44,7 @@ def reduce(t: NDArray[Any], signals: Mapping[str, NDArray[Any]], budget: int = B
     first = (len(t) - half) // 2
     last = first + half
     reduced = {}
-    for name, signal in signals.items():  # one after the other, for the memory
+    for name, signal in signals.items():  # one signal at a time, to limit the memory
         x = np.asarray(signal, dtype=np.float32)
         parts = extremes(x[:first], bucket), x[first:last], extremes(x[last:], bucket)
         reduced[name] = np.concatenate(parts)
@@ -56,7 +56,7 @@ def reduce(t: NDArray[Any], signals: Mapping[str, NDArray[Any]], budget: int = B
 _TIME = plain_axis("t")
 _WIDE = 3.5  # line width of the truth, which stays visible under an estimate
 _SIDES = ("", "_1", "_2")
-"""Suffixes of variables: of the joint, or of the sides of an antagonistic pair."""
+"""Suffixes of the variables of the whole joint, and of both sides of an antagonistic pair."""
 
 
 _QUANTITIES: Mapping[tuple[str, str], Mapping[str, str]] = {
@@ -81,18 +81,18 @@ _QUANTITIES: Mapping[tuple[str, str], Mapping[str, str]] = {
     ("Misfit of the model", "misfit [1]"): {"misfit{}": "1 where the model holds"},
     ("Set-point", plain_axis("setPoint")): {"setPoint{}": "set-point of the regression"},
 }
-"""Labels of signals by variable, {} being the side of a pair, for each panel by title and axis.
+"""Panels by title and axis; each panel has the labels of its signals by variable of the FMU.
 
-Noisy signals are first, because they would hide other signals.
+In a name, {} stands for the side of an antagonistic pair. Noisy signals are drawn first.
 """
 
 
 def stiffness_panels(
     reduced: Reduced, estimates: Mapping[str, Mapping[str, str]]
 ) -> Iterator[Panel]:
-    """Stiffness, and its relative error if the truth was recorded; for each side of a pair.
+    """Yields panels of the stiffness, and of the relative error if the truth was recorded.
 
-    estimates  by label: names of the signals by variable, sigma, sigma_1, sigma_2
+    estimates  names of the signals by variable (sigma, sigma_1, sigma_2), for each label
     """
     for side in _SIDES:
         labels = [label for label, names in estimates.items() if f"sigma{side}" in names]
@@ -131,13 +131,13 @@ def stiffness_panels(
 
 
 def _with_band(shown: tuple[float, float], lines: Sequence[Curve]) -> tuple[float, float]:
-    """Limits that also show the band at the end."""
+    """Extends the limits of an axis so that the 95 % band at the end of the lines is visible."""
     ends = [float(end[-1]) for line in lines for end in line.band or () if np.isfinite(end[-1])]
     return min([shown[0], *ends]), max([shown[1], *ends])
 
 
 def quantity_panels(reduced: Reduced, estimator: str) -> Iterator[Panel]:
-    """Panels of all other quantities; titles name the estimator, unless `estimator` is empty."""
+    """Yields panels of all other quantities; titles contain `estimator` unless it is empty."""
     for (title, axis), labels in _QUANTITIES.items():
         measured = all("_measured" in variable for variable in labels)  # for all estimators
         whose = f", {estimator}" if estimator and not measured else ""
@@ -145,14 +145,14 @@ def quantity_panels(reduced: Reduced, estimator: str) -> Iterator[Panel]:
             curves = _curves(labels, side, reduced)
             if curves:
                 full = f"{title}{_of_side(side)}{whose}"
-                # A spike, for example after a gap, does not change them.
+                # limits() ignores single spikes, for example after a gap.
                 low, high = zip(*(limits(curve.y) for curve in curves), strict=True)
                 y_range = with_margin(min(low), max(high), 0.06)
                 yield Panel(full, _TIME, axis, curves, y_range=y_range)
 
 
 def sampling(reduced: Reduced) -> list[str]:
-    """The samples that the plots show, in words."""
+    """Describes for the user which samples the plots show."""
     if reduced.whole is None:  # the signals are short
         return ["Every sample is in the plots: zoom in until single counts of the encoders show."]
     ends = f"the least and the greatest of every {reduced.bucket} samples"
@@ -168,7 +168,7 @@ def _of_side(side: str) -> str:
 
 
 def _sides(variables: Iterable[str], reduced: Reduced) -> Iterable[str]:
-    """The sides with a recorded signal, in the order of the signals."""
+    """Returns the sides of an antagonistic pair that have a recorded signal."""
     of_sides = ((each, side) for each in variables if "{}" in each for side in _SIDES)
     return dict.fromkeys(side for each, side in of_sides if each.format(side) in reduced.signals)
 
@@ -182,14 +182,14 @@ def _curves(labels: Mapping[str, str], side: str, reduced: Reduced) -> list[Curv
             continue
         if variable.startswith("plant.") and "_measured" not in variable:
             curves.append(Curve(label, TRUE, reduced.t, values, width=_WIDE))
-        # A constant signal was not connected: no sensor, no set-point.
+        # A constant signal is not shown: the joint has no sensor or no set-point.
         elif np.nanmin(values) != np.nanmax(values):
             curves.append(Curve(label, next(colors), reduced.t, values, width=1.1))
     return curves
 
 
 def _error(estimate: NDArray[Any], true: NDArray[Any]) -> NDArray[np.float32]:
-    """Relative error [%]; nan for 0, because a logarithmic scale has no 0."""
+    """Computes the relative error [%]; an error of 0 becomes nan for the logarithmic scale."""
     with np.errstate(divide="ignore", invalid="ignore"):
         error: NDArray[np.float32] = (100 * np.abs(estimate / true - 1)).astype(np.float32)
     error[~(error > 0) | ~np.isfinite(error)] = np.nan
@@ -197,7 +197,7 @@ def _error(estimate: NDArray[Any], true: NDArray[Any]) -> NDArray[np.float32]:
 
 
 def curve_panels(curve: joint.Curve, points: MeasuredPoints) -> Iterator[Panel]:
-    """The torque with the measured points, and the stiffness; no panels without data."""
+    """Yields panels of torque and stiffness against the deformation; none without data."""
     if not curve.branches:
         return
     settings = [branch.set_point for branch in curve.branches]
@@ -228,9 +228,9 @@ def curve_panels(curve: joint.Curve, points: MeasuredPoints) -> Iterator[Panel]:
 
 
 def _scale(curves: list[Curve]) -> tuple[float, float] | None:
-    """Range of the axis: the range of the data, without single points that are far off.
+    """Computes the range of the y axis from the data, without single outliers.
 
-    A wide band is shown only up to the size of the curve: else the curve would be a line at 0.
+    A wide band is cut at the size of the curve, because the curve would appear flat otherwise.
     """
     shown = []
     for each in curves:

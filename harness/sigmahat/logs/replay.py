@@ -21,19 +21,19 @@ OUTPUTS = (
     *("damping_hat", "load_friction_hat", "eccentric_hat", "delay_hat", "hysteresis_hat"),
     *("change_age", "sigma_per_gain"),
 )
-"""Real outputs that are recorded."""
+"""Real outputs of the estimator that are recorded."""
 FLAGS = ("confident", "valid")  # Boolean outputs that are recorded
-_LONGEST_GAP = 1_000_000  # most samples that `gap` takes out
+_LONGEST_GAP = 1_000_000  # largest number of missing samples in gap()
 _RATES = ("regression.bandwidth", "residual.K_I")  # [1/s], below 2 / samplePeriod
-_REASON = "doubt"  # output that is an enumeration; the names of its items are recorded
+_REASON = "doubt"  # an enumeration output; the names of the items are recorded
 
 
 def parameters(fmu: Fmu, configuration: Configuration) -> dict[str, Value]:
-    """Start values of the FMU: values of the configuration, encoders of columns in counts, and
-    filters not faster than the samples. A motor.gamma that is 0 or missing becomes the gear ratio
-    of theta.
+    """Computes start values of the FMU from the configuration, counts of encoders included.
+    Filters are not faster than the samples. If motor.gamma is 0 or missing, the gear ratio of theta
+    is used.
 
-    encoder.theta_c is set as well, though it has no effect: the contract of the FMU names it.
+    encoder.theta_c has no effect, but is set because the interface of the FMU contains it.
 
     Raises LogError for a name that the FMU does not have, or a value that does not fit.
     """
@@ -66,11 +66,11 @@ def parameters(fmu: Fmu, configuration: Configuration) -> dict[str, Value]:
 def play(
     slave: Slave, samples: Samples, chunk: int, t_0: float = 0.0, more: Sequence[str] = ()
 ) -> Iterator[dict[str, NDArray[Any]]]:
-    """Yields the outputs of an initialised estimator by name, a chunk of ticks at a time.
+    """Yields the outputs of an initialised estimator by name, for one chunk of ticks at a time.
 
-    The estimator has reached the time t_0 [s]. The sample at t_0 + t_k is the input of the tick at
-    that time. Ports without a configuration keep their values, which are 0 at the start and after a
-    gap.
+    The present time of the estimator is t_0 [s]. The sample at t_0 + t_k is the input of the tick
+    at t_0 + t_k. Ports without a configuration keep their values, which are 0 at the start and
+    after a gap.
 
     more  Real outputs that are recorded besides OUTPUTS
     """
@@ -83,28 +83,28 @@ def play(
         loop.set_real(slave, inputs, values)
         loop.step(slave, step_times(t, samples.T))
         recorder.add_to(loop)
-        with slave.only_errors():  # the notes of the samples have the ticks without values
+        with slave.only_errors():  # the notes of the samples already count the skipped ticks
             loop.run(0, len(values))
         columns = recorder.columns()
         yield {**columns, **{name: columns[name].astype(bool) for name in FLAGS}}
 
 
 def coefficients(slave: Slave, n: int, m: int) -> Sequence[Sequence[float]]:
-    """Current coefficients eta of (21), [size: n x m]."""
+    """Returns the current coefficients eta of (21), [size: n x m]."""
     outputs = present_values(slave, (f"eta[{i},{j}]" for i in range(n) for j in range(m)))
     return np.array([*outputs.values()]).reshape(n, m).tolist()
 
 
 def gap(slave: Slave, t_0: float, every: Mapping[str, Value]) -> float:
-    """Samples that are missing, at the time t_0 [s]: the filters start again with the next sample.
+    """Steps a slave without measurements from t_0 [s], so that its filters start again afterwards.
 
-    What is learned stays. The effect is as after a gap in a log: FilteredRegression needs one
-    missing sample, Paper2011 as many as its residual needs to give up what it has integrated
+    The slave keeps its estimates, as after a gap in a log. FilteredRegression needs one missing
+    sample. Paper2011 needs missing samples until the integral of the residual is discarded
     (sigmahat.h).
 
     every  parameters of the slave
 
-    Returns the time at the end [s].
+    Returns the time at the end of the gap [s].
     """
     T = float(every["samplePeriod"])
     ticks = 1

@@ -1,14 +1,14 @@
-"""Converts the columns of a log to inputs of the estimator at its ticks.
+"""Converts the columns of a log to inputs of the estimator at the ticks of the estimator.
 
-Tick k is at t_0 + k T, t_0 being the first time in the log. Notes describe the processing of the
-samples, in sentences for people.
+Tick k is at the time t_0 + k T, where t_0 is the first time in the log. Notes for the user describe
+the processing of the samples.
 
-A sample at a tick, within a thousandth of the period, is used without a change. A slower, faster or
-uneven column has samples elsewhere. Ticks between two such samples are interpolated linearly, if
-the samples are not further apart than the longest gap. The longest gap is configured, or three
-times the usual interval of the column. The values at all other ticks are nan, and the estimator
-skips these ticks. So a column with a sample for nearly every tick is only interpolated if a longest
-gap is configured.
+A sample within a thousandth of the period from a tick is used unchanged. A slower, faster or uneven
+column has samples between the ticks. A tick between two samples is interpolated linearly, if the
+samples are not further apart than the longest gap. The longest gap is configured, or three times
+the median interval of the column. The values at all other ticks are nan, and the estimator skips
+these ticks. A column with a sample for nearly every tick is interpolated only if the longest gap is
+configured.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -27,29 +27,29 @@ _USUAL_INTERVALS = 3.0
 _MOST_TICKS = 5_000_000
 _MOST_TICKS_OF_MANY_ROWS = 20  # ticks per row; limits memory by the size of the log
 _MOST_TICKS_PER_ROW = 200  # with more, the unit of the time is wrong
-_PART = 1 << 16  # samples that are compared at a time, for the memory
-_LONG_AGO = 1e6  # [s] A time that is larger counts from 1970, or from the start of a machine.
+_PART = 1 << 16  # samples that are compared at a time, to limit the memory
+_LONG_AGO = 1e6  # [s] A larger time counts from 1970, or from the start of a machine.
 
 
 @dataclass(frozen=True)
 class Samples:
-    """A log at the ticks of the estimator."""
+    """The values of a log at the ticks of the estimator."""
 
     T: float  # time between ticks [s]
     names: Sequence[str]  # ports
     values: Array  # [size: ticks x ports], nan where there is no value
     tick_of_row: NDArray[np.int32] = field(default_factory=lambda: np.empty(0, np.int32))
     """Last tick at or before each row of the log, if there is a log."""
-    notes: Sequence[str] = ()  # what had to be done to the samples, in sentences
+    notes: Sequence[str] = ()  # sentences about the processing of the samples
 
 
 _Asked = tuple[dict[str, Port], Time, float]
 _last: WeakKeyDictionary[Log, tuple[_Asked, Samples]] = WeakKeyDictionary()
-"""What sample() gave last for a log: the check and the replay of a log need the same."""
+"""Last result of sample() for each log: the check and the replay of a log use the same samples."""
 
 
 def sample(log: Log, configuration: Configuration, T: float) -> Samples:
-    """Values of all configured ports at the ticks, T apart [s].
+    """Returns the values of all configured ports at the ticks, which are T apart [s].
 
     Raises LogError for a T that is not positive, a missing column, times that do not increase, and
     a column without any value.
@@ -57,7 +57,7 @@ def sample(log: Log, configuration: Configuration, T: float) -> Samples:
     asked = dict(configuration.ports), configuration.time, T
     last = _last.get(log)
     if last is None or last[0] != asked:
-        _last.pop(log, None)  # first: its memory is free for the next one
+        _last.pop(log, None)  # frees the memory of the old samples before the new are computed
         last = asked, _sample(log, configuration, T)
         last[1].values.flags.writeable = False
         _last[log] = last
@@ -65,7 +65,7 @@ def sample(log: Log, configuration: Configuration, T: float) -> Samples:
 
 
 def _sample(log: Log, configuration: Configuration, T: float) -> Samples:
-    """As sample()."""
+    """Computes the samples for sample(), which stores the last result."""
     if not (np.isfinite(T) and T > 0.0):
         raise LogError(f"{configuration.path}: samplePeriod: expected more than 0 s, got {T:g}")
     notes: list[str] = list(log.notes)
@@ -87,7 +87,7 @@ def _sample(log: Log, configuration: Configuration, T: float) -> Samples:
         )
     notes.insert(0, f"{len(rows)} rows over {end - start:.6g} s; {ticks} ticks of {T:g} s")
     rows -= start
-    # A column at a time, so that only those that are there take memory.
+    # Columns are contiguous in memory and filled one by one, which limits the memory.
     values = np.empty((ticks, len(configuration.ports)), order="F")
     for i, (name, port) in enumerate(configuration.ports.items()):
         if port.value is not None:
@@ -114,9 +114,9 @@ def _sample(log: Log, configuration: Configuration, T: float) -> Samples:
 
 
 def _tick_of(rows: Array, T: float, ticks: int) -> NDArray[np.int32]:
-    """As tick_of_row of Samples.
+    """Returns the last tick at or before each row of the log.
 
-    rows  times since the first tick [s], nan where unknown; changed, for the memory
+    rows  times since the first tick [s], nan where unknown; overwritten to save memory
     """
     rows /= T
     rows += AT_TICK
@@ -129,7 +129,7 @@ def _tick_of(rows: Array, T: float, ticks: int) -> NDArray[np.int32]:
 def _times(
     log: Log, configuration: Configuration, name: str | None, T: float, notes: list[str]
 ) -> Array:
-    """Times of rows [s]; nan where a row has none."""
+    """Returns the times of the rows of a log [s]; nan for a row without a time."""
     if name is None:
         notes.append(f"no time column: rows taken as {T:g} s apart")
         first = next(each.column for each in configuration.ports.values() if each.column)
@@ -159,14 +159,14 @@ def _times(
 
 
 def _shown(times: Array, i: int) -> str:
-    """A time as text; relative to the first row if the times count from long ago."""
+    """Formats a time as text; times that count from 1970 are shown relative to the first row."""
     if abs(times[0]) < _LONG_AGO:
         return f"{times[i]:.9g} s"
     return f"{times[i] - times[0]:.9g} s from the first row"
 
 
 def _column(log: Log, name: str, port: Port, times: int, notes: list[str]) -> Array:
-    """A column in the unit of its port, with as many samples as times."""
+    """Reads a column in the unit of its port, and checks the number of samples."""
     values = log.read(port.column)
     if len(values) != times:
         raise LogError(
@@ -188,11 +188,11 @@ def _at_ticks(
     longest_gap: float | None,
     notes: list[str],
 ) -> Array:
-    """The values of the column of a port at the ticks, nan at ticks without a value [size: ticks].
+    """Returns a column of a port at the ticks, nan at ticks without a value [size: ticks].
 
     t            times since the first tick [s], increasing; nan where unknown; [size: samples]
     values       [size: samples], nan where a sample is missing
-    longest_gap  longest time between two samples to interpolate over [s]; None: see above
+    longest_gap  longest time between two interpolated samples [s]; None: from the intervals
     """
     finite = np.isfinite(t) & np.isfinite(values)
     if not finite.any():
@@ -239,7 +239,7 @@ def _one_for_each_tick(t: Array, T: float) -> bool:
 
 
 def stretches(mask: ArrayLike) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Runs of true values: the first index of each run, and the index after its last index."""
+    """Returns the first index of each run of true values, and the index after each run."""
     padded = np.zeros(np.size(mask) + 2, dtype=np.bool_)
     padded[1:-1] = mask
     edges = np.flatnonzero(padded[1:] != padded[:-1])
@@ -250,15 +250,15 @@ _LARGEST = 1e12  # SH_LARGEST_MEASUREMENT of sigmahat.h
 
 
 def refused(values: Array) -> NDArray[np.bool_]:
-    """Ticks that the estimator skips because of their values [size: ticks x ports]."""
+    """Marks ticks that the estimator skips because of the input values [size: ticks x ports]."""
     skipped = np.zeros(len(values), dtype=np.bool_)
-    for column in values.T:  # one after the other, for the memory
+    for column in values.T:  # one column at a time, to limit the memory
         skipped |= ~((column >= -_LARGEST) & (column <= _LARGEST))
     return skipped
 
 
 def _skipped(values: Array, T: float) -> Iterator[str]:
-    """Ticks at which the estimator has no value of some port, or one that it refuses."""
+    """Describes the ticks that the estimator skips: an input value is missing or is refused."""
     skipped = refused(values)
     if not skipped.any():
         return
@@ -272,13 +272,13 @@ def _skipped(values: Array, T: float) -> Iterator[str]:
 
 
 def _put_right(values: Array, ports: Mapping[str, Port], T: float) -> Iterator[str]:
-    """Moves theta or q after gaps by whole periods of its counter, so that both move equally far.
-    Motor and link go together, but for the deformation.
+    """Corrects theta or q after gaps by whole counter periods, so that both move equally far.
+    Motor and link move alike, apart from the deformation.
 
-    values  of the ports at the ticks [size: ticks x ports], nan where there is none; it is changed
+    values  of the ports at the ticks [size: ticks x ports], nan if missing; changed in place
     T       time between ticks [s]
 
-    Yields what was done, in sentences.
+    Yields sentences about the corrections.
     """
     both, period = counter(ports)
     if not np.isfinite(period):
@@ -300,12 +300,12 @@ def _put_right(values: Array, ports: Mapping[str, Port], T: float) -> Iterator[s
 
 
 def _whole_turns(values: Array, configuration: Configuration) -> Iterator[str]:
-    """Moves theta or q by whole periods of its counter, so that the deformation is in range.phi.
+    """Corrects theta or q by whole counter periods, so that the deformation is in range.phi.
 
-    A counter that was switched on in another turn is wrong by such periods. Nothing moves without
-    range.phi in the configuration, nor where the deformation stays beyond it.
+    The position from a counter that was switched on in another turn is wrong by whole periods. The
+    positions are unchanged without range.phi, or if no correction brings the deformation in range.
 
-    values  as in _put_right, after it
+    values  of the ports at the ticks, after _put_right() [size: ticks x ports]; changed in place
     """
     phi_most = configuration.parameters.get("range.phi")
     if phi_most is None:
@@ -320,12 +320,12 @@ def _whole_turns(values: Array, configuration: Configuration) -> Iterator[str]:
 def turns_from(
     center: float, most: float, values: Array, ports: Mapping[str, Port]
 ) -> tuple[str, int]:
-    """The port that wraps, theta or q, and by how many periods it has to move; 0 if by none.
+    """Returns the port that wraps, theta or q, and the correction in periods; 0 for none.
 
-    It moves if the median of the deformation is further than most from center, and then no more.
+    A correction must bring the median deformation from outside to inside of center +- most.
 
     center, most  [rad]
-    values        of the ports at the ticks [size: ticks x ports], nan where there is none
+    values        of the ports at the ticks [size: ticks x ports], nan for a missing value
     """
     both, period = counter(ports)
     if not np.isfinite(period):
@@ -343,9 +343,9 @@ def turns_from(
 
 
 def counter(ports: Mapping[str, Port]) -> tuple[Sequence[str], float]:
-    """The ports theta and q, first the one whose counter starts again after the smaller angle.
+    """Sorts theta and q by the angle after which the counter starts again, the smaller first.
 
-    Returns this angle as well [rad]; inf if no counter starts again, or theta or q is missing.
+    Returns the smaller angle as well [rad]; inf if no counter starts again, or a port is missing.
     """
     angles = {name: np.inf for name in ("theta", "q") if name in ports}
     for name in angles:

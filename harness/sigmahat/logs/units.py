@@ -1,4 +1,4 @@
-"""Conversion of a column to the unit of its port."""
+"""Converts the columns of a log to the units of their ports."""
 
 import math
 import re
@@ -14,23 +14,23 @@ _USUAL_TIMES = ("s", "ms", "us", "ns", "min", "h")
 _LONGEST = 40  # characters of a unit
 _SMALL = "\u2070\u00b9\u00b2\u00b3\u2074-\u2079"  # digits that are written as exponents
 _TOWER = re.compile(rf"[\d){_SMALL}]\s*(\*\*|\^|[{_SMALL}])|(\*\*|\^)\s*[+-]?\s*(\d\d|[^\d\s+-])")
-"""A power of a number or of a power, or a long exponent: 9**9**9 would take for ever."""
+"""Pattern of a power of a number, or a long exponent: to compute 9**9**9 would take too long."""
 
 
 def seconds(unit: str) -> float:
-    """Seconds in a unit of time. Raises LogError for a unit of another kind."""
+    """Returns the seconds in one unit of time. Raises LogError for any other unit."""
     return _in("time.unit", unit, "s", _USUAL_TIMES)
 
 
 def counts_per_turn(port: Port) -> float | None:
-    """Counts of the encoder in a turn of the joint; None if the port is not in counts."""
+    """Returns the counts of the encoder per turn of the joint; None for a port without counts."""
     if port.unit != "counts" or port.counts_per_turn is None:
         return None
     return port.counts_per_turn * abs(port.gear_ratio)
 
 
 def factor(name: str, port: Port) -> float:
-    """Value of the port, in its unit, for 1 in the column; without sign, zero and gear.
+    """Returns the factor from the column to the unit of the port, without sign, zero and gear.
 
     Raises LogError for a unit that is unknown or does not fit, and for a missing key that the unit
     needs.
@@ -58,12 +58,12 @@ def factor(name: str, port: Port) -> float:
 
 
 def scale(name: str, port: Port) -> float:
-    """As `factor`, with the sign and the gear."""
+    """Returns the factor from the column to the unit of the port, with sign and gear."""
     return port.sign * factor(name, port) / port.gear_ratio
 
 
 def convert(name: str, port: Port, values: Array) -> Array:
-    """Values of an unwrapped column in the unit of the port."""
+    """Converts the values of an unwrapped column to the unit of the port."""
     times = scale(name, port)
     if (times, port.zero) == (1.0, 0.0):
         return values
@@ -73,7 +73,7 @@ def convert(name: str, port: Port, values: Array) -> Array:
 
 
 def unwrap(values: Array, period: float) -> tuple[Array, int]:
-    """A column of a counter that starts again after a period, unwrapped, and the number of jumps.
+    """Unwraps a column of a counter that starts again after a period, and counts the jumps.
 
     A step of more than half a period between finite values is a jump.
     """

@@ -26,7 +26,7 @@ _OF_RESONANCE = (0.15, 0.3, 0.5)  # ratio of the highest frequency to the lowest
 _EXPONENTS = (1.0, 2.0)  # amplitudes fall with the frequency to this power
 _HIGHEST = 5.0  # [Hz] no motion of a stiff joint is faster
 _CYCLES = 2.0  # least number of cycles of the slowest sine
-_RAMP = 0.15  # of the duration, at most
+_RAMP = 0.15  # largest duration of a ramp, relative to the duration of the motion
 _LONGEST_RAMP = 2.0  # [s]
 _COARSE = 0.02  # [s] sample period for the search of peaks
 _REST, _STEPS = 1e-6, 6
@@ -137,7 +137,7 @@ def design(
 
 
 def _why_none(joints: Sequence[Joint], limits: Limits, duration: float) -> str:
-    """The reason in a sentence: the duration is too short, or weight and friction are too large."""
+    """Explains why no motion is possible: the duration is too short, or the torque too large."""
     lowest = min(each.resonance for each in joints)
     shortest = _shortest(_frequencies(lowest, _OF_RESONANCE[-1]))
     if duration < shortest:
@@ -168,7 +168,7 @@ def _shortest(frequencies: Sequence[float]) -> float:
 
 
 def trials() -> int:
-    """Number of joints that are tried, at most."""
+    """Returns the largest number of joints that are tried."""
     return len(_OF_RESONANCE) * len(_EXPONENTS) * _COMPARED + _PROMISED
 
 
@@ -195,7 +195,7 @@ def _candidates(joints: Sequence[Joint], limits: Limits, duration: float) -> Ite
 
 
 def _within(motion: Multisine, joints: Sequence[Joint], limits: Limits) -> Multisine | None:
-    """The motion as large as the limits allow; None if even a joint at rest exceeds the limits."""
+    """Scales a motion to the limits; None if even a joint at rest exceeds the limits."""
     position, velocity, _ = motion.at(motion.times(_COARSE))
     scale = _MARGIN * min(limits.angle / _peak(position), limits.velocity / _peak(velocity))
     rest = _peaks(motion.scaled(_REST * scale), joints)

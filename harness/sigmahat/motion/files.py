@@ -1,4 +1,4 @@
-"""A motion as files: CSV, a trajectory for ROS, and C that computes it sample by sample."""
+"""Writes a motion as files: CSV, a trajectory for ROS, and C code that computes the motion."""
 
 import json
 from pathlib import Path
@@ -43,7 +43,7 @@ def _ros(motion: Multisine, joint: str, start: float) -> str:
 
 
 def _c(motion: Multisine, start: float) -> str:
-    """C99 without a table, with the formulas of Multisine."""
+    """Formats the motion as C99 code with the formulas of Multisine."""
     sines = ", ".join(
         f"{{{A!r}, {2 * np.pi * f!r}, {p!r}}}"
         for A, f, p in zip(motion.amplitudes, motion.frequencies, motion.phases, strict=True)

@@ -19,7 +19,7 @@ class Multisine:
     """Position e(t) sum_i A_i sin(2 pi f_i t + p_i) of the motor at the gear output.
 
     The envelope e rises from 0 to 1 in the ramp, as s^4 (35 - 84 s + 70 s^2 - 20 s^3) with s from 0
-    to 1, and falls again at the end. So position, velocity, acceleration and jerk are 0 there.
+    to 1, and falls at the end. Position, velocity, acceleration and jerk are 0 at both ends.
     """
 
     amplitudes: Sequence[float]  # [rad]
@@ -118,7 +118,7 @@ _SLOW = 1e-3  # [rad/s] below this velocity, the Coulomb friction is smaller
 
 @dataclass(frozen=True)
 class Ranges:
-    """The set of joints: each quantity between two values, drawn evenly over its logarithm.
+    """The set of joints: each quantity between two values, drawn from a log-uniform distribution.
 
     The angle is drawn evenly.
     """

@@ -66,7 +66,7 @@ def of_log(log: Log, configuration: Configuration, start: float) -> Ranges:
 def _link(
     log: Log, configuration: Configuration, found: Estimate
 ) -> tuple[float, float, float, float]:
-    """Inertia, friction, largest torque of the weight, and its angle at q = 0, by least squares.
+    """Fits inertia, friction, largest torque of the weight, and its angle at q = 0.
 
     The torque of the spring moves the link: M q'' + D_q q' + weight sin(q + angle) = -tau_e, (2).
     """

@@ -42,7 +42,7 @@ class Field:
 
 
 def items(values: Iterable[str]) -> list[tuple[str, str]]:
-    """Values to choose from that stand for themselves."""
+    """Creates items of a choice whose labels are equal to the values."""
     return [(each, each) for each in values]
 
 
@@ -78,7 +78,7 @@ _OF_A_GUESS = (FILL_IN, "CHECK", NOT_YOURS, WIDE_PRIOR)
 
 
 def value_of(document: tomlkit.TOMLDocument, key: str) -> Any:
-    """The value of a key as "ports.tau.sign" or "motor.B"; None if the key is missing."""
+    """Returns the value of a key such as "ports.tau.sign" or "motor.B"; None if missing."""
     return next((value for name, value in _values(document) if name == key), None)
 
 
@@ -110,14 +110,14 @@ def set_port(document: tomlkit.TOMLDocument, port: str, table: Table | None) -> 
 
 
 def comment_of(document: tomlkit.TOMLDocument, key: str) -> str:
-    """The comment of a key that a guess left: what to fill in or to check; else empty."""
+    """Returns the comment of a guess on a key to be filled in or checked; else ""."""
     item = joints.items(document).get(_place(key))
     comment = "" if item is None else item.trivia.comment.removeprefix("#").strip()
     return comment if comment.startswith((FILL_IN, "CHECK")) else ""
 
 
 def to_fill_in(document: tomlkit.TOMLDocument) -> list[str]:
-    """Keys that need a value from the user."""
+    """Returns the keys for which the user must give a value."""
     found = [
         key
         for key, value in _values(document)

@@ -32,7 +32,7 @@ def style() -> InlineStyleSheet:
 
 
 def words(html: str = "", name: str | None = None, **styles: str | None) -> Div:
-    """A text in HTML; `styles` are CSS properties, with "_" for "-"."""
+    """Creates a text in HTML; `styles` are CSS properties, with "_" for "-"."""
     css: dict[str, str | None] = {"color": "var(--ink)", "overflow-wrap": "anywhere"}
     css |= {key.replace("_", "-"): value for key, value in styles.items()}
     return Div(text=html, name=name, sizing_mode="stretch_width", styles=css, stylesheets=[style()])
@@ -45,7 +45,7 @@ def button(name: str, clicked: Callable[[], object], label: str = "", **more: An
 
 
 def in_grid(children: Sequence[UIElement], least: str, name: str | None = None) -> Row:
-    """Elements side by side, as many as fit; a hidden element leaves no gap.
+    """Arranges elements in rows, as many as fit; a hidden element leaves no gap.
 
     least  width of a child, in CSS
     """

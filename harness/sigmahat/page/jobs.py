@@ -55,7 +55,7 @@ Later = Callable[[Callable[[], object]], object]  # calls a function in the serv
 
 
 class _OutdatedError(Exception):
-    """The configuration has changed meanwhile."""
+    """The configuration was changed while a job for the earlier configuration was running."""
 
 
 class Jobs:

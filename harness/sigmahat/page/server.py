@@ -83,7 +83,7 @@ def serve(
 
 
 def _listen(token: str, port: int, window: Callable[[Document], object]) -> tuple[BaseServer, int]:
-    """A server that listens, and its port; window fills the document of each window."""
+    """Starts a server and returns its port; `window` fills the document of each window."""
     # No messages about other requests of browsers, and about windows that close.
     for name in ("tornado.access", "bokeh.server.views"):
         logging.getLogger(name).setLevel(logging.ERROR)

@@ -62,12 +62,12 @@ class Setup:
 
     @property
     def text(self) -> str:
-        """The configuration of the joint that is shown."""
+        """The configuration of the joint that the page shows."""
         return tomlkit.dumps(self.document)
 
     @property
     def text_of_file(self) -> str:
-        """The configuration of all joints, as it would be written."""
+        """The configuration of all joints, in the form for the file."""
         return tomlkit.dumps(together(self.joints)) if len(self.joints) > 1 else self.text
 
     @property

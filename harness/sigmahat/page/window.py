@@ -169,7 +169,7 @@ class FindingsPanel:
         return rows
 
     def _finding(self, finding: Finding, text: str) -> UIElement:
-        """A sentence, and a button for each value that is proposed."""
+        """Shows the sentence of a finding, and a button for each proposed value."""
         buttons = []
         for key, value in [(finding.key, finding.proposed), *finding.others]:
             if value is not None:
@@ -183,7 +183,7 @@ class FindingsPanel:
 
 
 def _line(text: str, kind: str = "ink", weight: str | None = None) -> UIElement:
-    """A paragraph; kind is a colour of the page."""
+    """Creates a paragraph; kind is a colour of the page."""
     return words(escape(text), color=f"var(--{kind})", font_weight=weight)
 
 

@@ -28,7 +28,7 @@ if TYPE_CHECKING:  # `reproduce` writes its files without pyarrow
 
 @dataclass(frozen=True)
 class Result:
-    """Runs of one scenario."""
+    """The runs of one scenario with several seeds, and their indices."""
 
     scenario: Scenario
     seeds: Sequence[int]
@@ -36,7 +36,7 @@ class Result:
     indices: Sequence[dict[str, Indices]]  # indices for each seed, by comparison
 
     def mean(self, comparison: str, field: str) -> tuple[float, float]:
-        """An index over the seeds: its mean, and half the width of the 95 % interval."""
+        """Computes the mean of an index for all seeds, and half of the 95 % interval."""
         return mean_interval([getattr(each[comparison], field) for each in self.indices])
 
 
@@ -107,7 +107,7 @@ def write_results(result: Result, folder: Path) -> None:
 
 
 def as_dict(result: Result) -> dict[str, Any]:
-    """The contents of table.csv, for JSON."""
+    """Returns the contents of table.csv as dictionaries for JSON."""
     head, rows = _indices(result)
     table = [dict(zip(head, row, strict=True)) for row in rows]
     return {"scenario": result.scenario.name, "seeds": list(result.seeds), "table": table}
@@ -145,7 +145,7 @@ def _titles(series: Series, prefix: str) -> Iterator[str]:
 
 
 def conditions(result: Result) -> str:
-    """The conditions of the runs in one line."""
+    """Describes the conditions of the runs in one line."""
     scenario, seeds = result.scenario, result.seeds
     noise = f"seed {seeds[0]}"
     if len(seeds) > 1:
@@ -168,7 +168,7 @@ def table(result: Result) -> str:
 
 
 def _table(result: Result, columns: Sequence[Index], with_paper: bool) -> str:
-    """One table; the paper gives indices of the first two columns."""
+    """Formats one table of indices; the first two columns have values of the paper."""
     paper = result.scenario.paper if with_paper else {}
     rows = [_head(result.scenario, columns)]
     beside = [("paper", "paper")]
@@ -182,7 +182,7 @@ def _table(result: Result, columns: Sequence[Index], with_paper: bool) -> str:
 
 
 def _head(scenario: Scenario, columns: Sequence[Index]) -> list[str]:
-    """Titles of a table; a time that is common to all columns stands in the corner."""
+    """Formats the titles of a table; a time common to all columns is in the corner cell."""
     settled = {index.settled for index in columns}
     if len(settled) > 1:
         return ["", *(index.title(index.when(scenario.settled)) for index in columns)]
@@ -206,7 +206,7 @@ def _number(value: float, index: Index) -> str:
 
 
 def _paper(indices: tuple[float, float] | None) -> tuple[str, str]:
-    """Cells for the indices of the paper, with as many digits as show that they are not zero."""
+    """Formats the indices of the paper with enough digits to distinguish them from zero."""
     if indices is None:
         return "", ""
     mse, msrep = (f"{value:.2f}" if value >= 0.1 else f"{value:.2g}" for value in indices)

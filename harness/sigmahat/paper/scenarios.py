@@ -19,7 +19,7 @@ OUTPUTS = (
 
 
 def against_the_plant(estimators: Iterable[str]) -> list[Comparison]:
-    """Each estimator compared with the true stiffness of the plant."""
+    """Creates comparisons of each estimator with the true stiffness of the plant."""
     return [Comparison(name, f"{name}.sigma", "plant.sigma") for name in estimators]
 
 
@@ -42,7 +42,7 @@ _FIGURES_9_TO_12 = (
 
 
 def awas(retraction: float, tau: Sine = SECTION_VI_B) -> Plant:
-    """The AwAS with the torques of section VI.B, or with another torque of the principal motor.
+    """Creates the AwAS plant with torques of section VI.B, or another principal motor torque.
 
     At first, the lever arm is shortened by retraction [m].
     """
@@ -55,7 +55,7 @@ def awas(retraction: float, tau: Sine = SECTION_VI_B) -> Plant:
 
 
 def lever_arm(plant: Plant) -> float:
-    """r(0) of an AwAS, (30) [m]."""
+    """Computes the lever arm r(0) of an AwAS, (30) [m]."""
     return R_0 - _B * float(plant.start["initial.theta_c"])
 
 
@@ -64,11 +64,11 @@ _ONE_MOTOR, _TWO_MOTORS = (
     for names in (("theta", "q", "tau"), ("theta", "q", "theta_c", "tau"))
 )
 _AWAS = {**_TWO_MOTORS, "tau_e_sensor": "tau_e_measured"}
-"""Outputs of a plant by the input of the estimator that they feed."""
+"""Outputs of a plant, by the estimator input to which each output is connected."""
 
 
 def estimator(start: Mapping[str, Value], connections: Mapping[str, str] = _AWAS) -> EstimatorFmu:
-    """The estimator with the given start values, else the values of the FMU."""
+    """Creates an estimator with the given start values; others are values of the FMU."""
     start = {"samplePeriod": T, **start}
     return EstimatorFmu("StiffnessEstimator", start, connections, record=OUTPUTS)
 
@@ -76,7 +76,7 @@ def estimator(start: Mapping[str, Value], connections: Mapping[str, str] = _AWAS
 def simulation(
     name: str, description: str, duration: float, retraction: float, start: Mapping[str, Value]
 ) -> Scenario:
-    """Section VI.B."""
+    """Creates the scenario of section VI.B of the paper."""
     # The MODEL of the paper is fed with (28) at the actual deformation (its footnote 1), like a
     # sensor without noise. The modality Model of the FMU has only the measured positions.
     estimators = {
@@ -103,7 +103,7 @@ def simulation(
 
 
 def experiment() -> Scenario:
-    """Section VI.C: the plant differs from the nominal data as a real device does."""
+    """Creates the scenario of section VI.C: the plant differs from the nominal data."""
     plant = Plant(
         fmu="AwasPlant",
         start={
@@ -240,7 +240,7 @@ SCENARIOS = {
         antagonistic(),
     )
 }
-"""All scenarios by name."""
+"""All scenarios of `sigmahat reproduce`, by name."""
 
 
 def scenario(name: str) -> Scenario:

@@ -29,7 +29,7 @@ class PlantEquations:
         plant.derivative(v, force / mass)
         plant.output("x", x)
 
-    Names of inputs, parameters and outputs are those of the FMU's variables. Their units, start
+    Names of inputs, parameters and outputs are the names of the FMU variables. Their units, start
     values and ranges are in ``modelDescription/NAME.xml``, or for `write_plant_fmu` in the
     `PlantVariable` of each variable. Expressions are CasADi ``SX``.
     """
@@ -52,7 +52,7 @@ class PlantEquations:
         return self._declare(self.parameters, name)
 
     def state(self, name: str, start: ca.SX | float, scale: float) -> ca.SX:
-        """State ``name``. Its start value is an expression of the parameters alone.
+        """State ``name``. The start value of a state is an expression of the parameters alone.
 
         ``scale`` is a change of the state that matters, in its unit. The integrator keeps the error
         of each step far below ``scale + |state|`` (``fmu_src/radau.h``).

@@ -19,7 +19,7 @@ that would stick creeps instead, at this velocity under 76 % of the friction tor
 def position(plant: PlantEquations, name: str) -> ca.SX:
     """State `name` [rad] of a link or motor, which starts at the parameter `initial.<name>`.
 
-    Its scale is 0.01 rad, because so small a deformation may carry the whole torque.
+    The scale of the state is 0.01 rad, because a small deformation may have a large torque.
     """
     return plant.state(name, plant.parameter(f"initial.{name}"), scale=0.01)
 

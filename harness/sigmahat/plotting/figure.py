@@ -15,7 +15,7 @@ from sigmahat.plotting.panels import Curve, Kind, Panel
 
 
 def stacked(panels: Sequence[Panel]) -> Figure:
-    """One panel below the other, each with an axis of its own."""
+    """Draws panels one below the other, each with its own axis."""
     figure = Figure(figsize=(7.2, 0.8 + 2.8 * len(panels)), layout="constrained")
     for axes, panel in zip(figure.subplots(len(panels), squeeze=False)[:, 0], panels, strict=True):
         draw(axes, panel)
@@ -59,7 +59,7 @@ def label_x(axes: Axes, panel: Panel) -> None:
 
 
 def _line(axes: Axes, curve: Curve, first: bool) -> None:
-    """A line with its band, both faded outside of the data, in front of its measured points."""
+    """Draws a line and its band, paler outside of the data, in front of the measured points."""
     color, within = curve.color, curve.within
     if curve.behind is not None:
         style: Any = {"color": color, "marker": "o", "linestyle": "", "markeredgewidth": 0}

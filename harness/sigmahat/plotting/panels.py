@@ -31,11 +31,11 @@ class Curve:
     y: NDArray[Any]
     kind: Kind = Kind.LINE
     band: tuple[NDArray[Any], NDArray[Any]] | None = None
-    """Lower and upper end of the intervals of a line, or of means."""
+    """Lower and upper ends of the 95 % intervals of the points of a line."""
     within: NDArray[np.bool_] | None = None
-    """Part of a line in the range of the data, which is not faded; None: the whole line."""
+    """Points of the line in the range of the data, which are not paler; None: all points."""
     behind: tuple[NDArray[Any], NDArray[Any]] | None = None
-    """x and y of points that a line was fitted to."""
+    """Coordinates x and y of the points to which the line was fitted."""
     width: float = 1.4
 
 

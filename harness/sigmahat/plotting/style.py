@@ -1,4 +1,4 @@
-"""Common parts of figures: colours, symbols with units, and limits of an axis."""
+"""Defines common parts of figures: colours, symbols with units, and limits of an axis."""
 
 import re
 from collections.abc import Iterable
@@ -18,7 +18,7 @@ PAGE = Path(__file__).with_name("page.css")  # colours of a page and of its plot
 
 @dataclass(frozen=True)
 class Quantity:
-    """A quantity that has an axis or a row."""
+    """A quantity with symbol and unit, for an axis of a plot or a row of a table."""
 
     words: str
     math: str  # symbol in the figures, for Matplotlib
@@ -34,7 +34,7 @@ QUANTITIES = {
     "setPoint": Quantity("set-point", "s", "s", "1"),
     "t": Quantity("time", "t", "t", "s"),
 }
-"""Quantities by output of the estimator."""
+"""Quantities by the output of the estimator that has their values."""
 _DIGITS = str.maketrans("23456789", "²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -50,19 +50,19 @@ def plain_axis(name: str) -> str:
 
 
 def plain_unit(unit: str) -> str:
-    """A unit of the FMUs in a page: N·m for N.m, kg·m² for kg.m2."""
+    """Formats a unit of the FMUs for a page: N·m for N.m, kg·m² for kg.m2."""
     powers = re.sub(r"(?<=[A-Za-z)])\d", lambda digit: digit[0].translate(_DIGITS), unit)
     return powers.replace(".", "·")
 
 
 def plain_title(name: str, unit: str | None) -> str:
-    """Title of a row or a column: symbol, or name, and unit."""
+    """Formats the title of a row or a column: symbol or name, and unit."""
     symbol = QUANTITIES[name].plain if name in QUANTITIES else name
     return f"{symbol} [{plain_unit(unit)}]" if unit else symbol
 
 
 def plain_text(text: str) -> str:
-    """Words of the terminal in a page: symbols and powers as the paper writes them."""
+    """Replaces names of a terminal text by the symbols and powers of the paper."""
     symbols = {name: q.plain for name, q in QUANTITIES.items() if len(name) > 1}
     symbols["setPoint"] = "set-point"
     text = re.sub(r"[A-Za-z_]+", lambda word: symbols.get(word[0], word[0]), text)
@@ -76,7 +76,7 @@ _FURTHER = 0.5
 
 
 def limits(values: NDArray[Any]) -> tuple[float, float]:
-    """Least and greatest of the values that are shown; (0, 1) if none is finite.
+    """Computes the range of the values that a plot shows; (0, 1) without finite values.
 
     The outermost percent, for example a spike after a gap, is cut off where it is far away.
     """
@@ -92,13 +92,13 @@ def limits(values: NDArray[Any]) -> tuple[float, float]:
 
 
 def with_margin(low: float, high: float, share: float) -> tuple[float, float]:
-    """Limits of an axis with a margin at either end, a fraction of the span."""
+    """Extends the limits of an axis by a margin at both ends, relative to the span."""
     margin = share * ((high - low) or abs(high) or 1.0)
     return low - margin, high + margin
 
 
 def around(parts: Iterable[NDArray[Any]], share: float) -> tuple[float, float] | None:
-    """Limits with a margin around all finite values; None without finite values."""
+    """Computes limits with a margin around all finite values; None without finite values."""
     values = np.concatenate([np.empty(0), *parts])
     values = values[np.isfinite(values)]
     return with_margin(float(values.min()), float(values.max()), share) if len(values) else None

@@ -1,1 +1,1 @@
-"""One HTML file from the results of a reproduction, a log or a sweep."""
+"""Creates one HTML file from the results of a reproduction, a log or a sweep."""

@@ -41,7 +41,7 @@ class Contents:
 
 
 def number(value: object) -> str:
-    """A cell for a value; "-" for a value that is not defined."""
+    """Formats a value for a cell of a table; "-" for an undefined value."""
     if value is None or value == "":
         return "-"
     if not isinstance(value, float):
@@ -50,7 +50,7 @@ def number(value: object) -> str:
 
 
 def of_file(title: str, table: pa.Table) -> TextTable:
-    """A table as it is in a file, whose titles are names and units."""
+    """Converts a table with names and units as titles to a table of a report."""
     import pyarrow as pa
 
     columns = [[number(cell) for cell in column.to_pylist()] for column in table.columns]

@@ -1,4 +1,4 @@
-"""A report from the files of `sigmahat estimate`."""
+"""Creates a report from the files of `sigmahat estimate`."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -114,7 +114,7 @@ def findings_table(findings: Sequence[tuple[str, str]]) -> TextTable:
 
 
 def _estimates(signals: EstimateTable) -> TextTable:
-    """Each output at the end, and its range and RMS where the estimator ran in the second half."""
+    """Lists each output at the end, with range and RMS in the second half of the log."""
     late = signals.used.copy()
     late[: len(late) // 2] = False
     rows = []
@@ -131,7 +131,7 @@ def _estimates(signals: EstimateTable) -> TextTable:
 
 
 def _doubts(doubts: Mapping[str, float]) -> TextTable:
-    """How often the estimator was confident, and why not, in the second half."""
+    """Lists how often the estimator was confident in the second half, and reasons for doubt."""
     shares = [[item, f"{100 * share:.3g}"] for item, share in doubts.items()]
     head = ["why not confident", "fraction of the ticks [%] *"]
     note = "* in the second half; None: it was confident"
@@ -164,7 +164,7 @@ def found_table(sheet: Sheet) -> TextTable:
 
 
 def estimator_table(sheet: Sheet) -> TextTable:
-    """All parameters of the estimator without the coefficients of its curve; folded."""
+    """Lists all parameters of the estimator except the coefficients of the curve; collapsed."""
     rows = [
         [name, str(value).lower() if isinstance(value, bool) else number(value)]
         for name, value in sheet.start_values.items()

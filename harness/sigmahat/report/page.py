@@ -24,7 +24,7 @@ _STIFFNESS = re.compile(r"sigma(_\d)?")
 
 
 def from_reproduction(folder: Path) -> Contents:
-    """Stiffness of every estimator, and all other signals of one estimator.
+    """Creates panels of the stiffness of every estimator, and other signals of one estimator.
 
     Raises ValueError as read_result_files() does.
     """
@@ -76,7 +76,7 @@ def from_sweep(folder: Path) -> Contents:
 
 
 def report(folder: Path) -> str:
-    """HTML with the tables and plots of a reproduction, a log or a sweep in a folder.
+    """Creates HTML with the tables and plots of a reproduction, a log or a sweep in a folder.
 
     Raises ValueError, which says what to do, if the folder has no such results, or damaged files.
     """

@@ -28,7 +28,7 @@ def plots(
     """
     sources: dict[int, ColumnDataSource] = {}
     times = [curve.x for panel in panels if panel.linked for curve in panel.curves]
-    # One object for all linked panels: they zoom together.
+    # All linked panels share one range object, so that the panels zoom together.
     linked = Range1d(float(times[0][0]), float(times[0][-1])) if times else Range1d()
     made = []
     for i, panel in enumerate(panels):
@@ -57,7 +57,7 @@ def _y_limits(panel: Panel) -> tuple[float, float]:
 
 
 def _limits(values: Sequence[NDArray[Any]], log: bool) -> tuple[float, float]:
-    """Least and greatest with a margin; of positive values only on a logarithmic scale."""
+    """Computes limits of an axis with a margin; a logarithmic scale uses positive values only."""
     if not log:
         return around(values, 0.06) or (0.0, 1.0)
     positive = np.concatenate([v[np.isfinite(v) & (v > 0)] for v in values])
@@ -112,7 +112,7 @@ def _draw(plot: figure, curve: Curve, name: str, sources: dict[int, ColumnDataSo
 
 
 def _draw_line(plot: figure, curve: Curve, name: str, source: ColumnDataSource) -> None:
-    """A line, in front of its band and its measured points; all parts have one name."""
+    """Draws a line in front of its band and its measured points; all parts have one name."""
     if curve.behind is not None:
         x, y = curve.behind
         style = {"color": curve.color, "alpha": 0.12, "line_color": None, "size": 3}

@@ -26,7 +26,7 @@ _OVER = ("phi", "theta_dot", "tau_e")  # signals with which the residual is comp
 
 @dataclass(frozen=True)
 class Residuals:
-    """The second half of a log, one sample in each period of the estimator's filters."""
+    """Samples of the second half of a log, one in each period of the estimator filters."""
 
     T: float  # time between the samples [s]
     t: Array  # [s]
@@ -43,7 +43,7 @@ class Residuals:
 def residuals(
     t: Array, signals: Mapping[str, NDArray[Any]], used: NDArray[np.bool_], bandwidth: float
 ) -> Residuals | None:
-    """The residuals of a log; None if the second half is too short.
+    """Computes the residuals of a log; None if the second half is too short.
 
     signals    outputs of the estimator at the times t: epsilon and _OVER
     used       whether the estimator used the sample
@@ -106,14 +106,14 @@ def residual_panels(found: Residuals) -> Iterator[Panel]:
 
 
 def autocorrelation(x: Array, lags: int) -> Array:
-    """Correlation of a signal with itself, 1 to `lags` samples later [size: lags]."""
+    """Computes the autocorrelation of a signal for lags of 1 to `lags` samples [size: lags]."""
     x = x - x.mean()
     power = float(np.mean(x**2)) or 1.0
     return np.array([np.mean(x[k:] * x[:-k]) / power for k in range(1, lags + 1)])
 
 
 def means(x: Array, y: Array) -> tuple[Array, Array, Array]:
-    """Mean of y in bins of x with as many samples each, and half the width of its 95 % interval."""
+    """Computes means of y in bins of x with equal counts, and half of the 95 % intervals."""
     order = np.argsort(x, kind="stable")
     bins = np.array_split(order, _BINS)
     center = np.array([x[each].mean() for each in bins])

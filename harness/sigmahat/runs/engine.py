@@ -55,7 +55,7 @@ def run_all(
     processes: int | None = None,
     progress: Progress = lambda done: None,
 ) -> list[Result]:
-    """Results of the jobs, in their order; the first exception of a job ends all jobs.
+    """Returns the results of all jobs in order; the first exception of a job ends all jobs.
 
     jobs       partial objects of run or measured: other processes receive them
     processes  largest number of processes, by default one per processor; no effect on results
@@ -70,7 +70,7 @@ def run_all(
 
 
 def indices_by_comparison(scenario: Scenario, recording: Recording) -> dict[str, Indices]:
-    """The performance indices of each comparison of the scenario, by its name."""
+    """Computes the performance indices of each comparison in a scenario, by name."""
     return {
         each.name: indices(
             recording.t,

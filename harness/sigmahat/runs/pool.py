@@ -1,4 +1,4 @@
-"""Independent jobs, spread over processes of this machine."""
+"""Runs independent jobs in parallel processes of this machine."""
 
 import multiprocessing
 import os
@@ -54,8 +54,8 @@ def spread(
 def _interrupts_for_the_parent_alone() -> Iterator[None]:
     """Processes that start inside the block ignore Ctrl-C, which a terminal sends to them too.
 
-    They inherit the blocked signal. In this process the signal waits until the end of the block,
-    also if another thread receives it. So no process stays half started.
+    New processes inherit the blocked signal. In this process, the signal waits until the end of the
+    block, also if another thread receives the signal. Therefore each process is fully started.
     """
     if not hasattr(signal, "pthread_sigmask"):
         yield
@@ -70,7 +70,7 @@ def _interrupts_for_the_parent_alone() -> Iterator[None]:
 
 
 def _end_with_the_parent() -> None:
-    """Ends this process when its parent has ended; else this process would wait for ever."""
+    """Ends this process when the parent process has ended, instead of waiting forever."""
     parent = multiprocessing.parent_process()
     assert parent is not None
     sentinel = parent.sentinel

@@ -53,7 +53,7 @@ class Comparison:
 
 @dataclass(frozen=True)
 class Scenario:
-    """One run of a plant and its estimators."""
+    """A simulation of a plant and its estimators."""
 
     name: str  #: Name for `sigmahat reproduce --scenario`, and for folders.
     description: str  #: One line.
@@ -109,13 +109,13 @@ PLANT, NOMINAL = "plant", "nominal"
 
 
 def source_and_variable(signal: str) -> tuple[str, str]:
-    """The two parts of a signal."""
+    """Splits the name of a signal into source and variable."""
     source, _, variable = signal.rpartition(".")
     return source, variable
 
 
 def signal_of(recording: Recording, signal: str) -> NDArray[Any]:
-    """The values of a signal, shape (N + 1,). Raises KeyError if it was not recorded."""
+    """Returns the values of a signal, shape (N + 1,). Raises KeyError for an unrecorded signal."""
     source, variable = source_and_variable(signal)
     if source == NOMINAL:
         return nominal_awas(recording)[variable]

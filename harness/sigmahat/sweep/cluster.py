@@ -1,4 +1,4 @@
-"""Jobs on a Dask cluster; sigmahat.runs.pool does jobs in processes of this machine."""
+"""Runs jobs on a Dask cluster; sigmahat.runs.pool runs jobs in processes of this machine."""
 
 import asyncio
 import logging

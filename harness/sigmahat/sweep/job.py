@@ -28,7 +28,7 @@ COMMIT;
 
 
 class Records:
-    """The results of all runs that were ever done in a folder, as an SQLite file.
+    """An SQLite file with the results of all completed runs in a folder.
 
     A later sweep with the same run does not repeat it, whatever else its plan has. A run that
     failed is not recorded.
@@ -46,14 +46,14 @@ class Records:
             raise
 
     def outcome(self, run: Run) -> Outcome | None:
-        """The outcome of a run; None if it is not recorded."""
+        """Returns the outcome of a run; None for a run without a recorded outcome."""
         text = self._indices.get(identity(run))
         if text is None:
             return None
         return Outcome({name: Indices(*each) for name, each in json.loads(text).items()}, None)
 
     def add(self, run: Run, outcome: Outcome) -> None:
-        """Writes the outcome of a run at once, so that a later kill does not lose it."""
+        """Writes the outcome of a run immediately, to keep the outcome after an interruption."""
         indices = {name: astuple(each) for name, each in outcome.indices.items()}
         row = identity(run), json.dumps(indices)
         self._file.execute("INSERT INTO runs VALUES (?, ?)", row)
@@ -105,7 +105,7 @@ def sweep(
 def all_outcomes(
     plan: Plan, records: Records, scheduler: str | None, progress: Progress
 ) -> list[Outcome]:
-    """The outcomes of all runs in their order: recorded, or of runs that are done now."""
+    """Returns the outcomes of all runs in order; runs without a recorded outcome are done now."""
     outcomes = [records.outcome(run) for run in plan.runs]
     missing = [run for run, found in zip(plan.runs, outcomes, strict=True) if found is None]
     progress(plan.count - len(missing))

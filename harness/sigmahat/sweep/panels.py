@@ -1,4 +1,4 @@
-"""The panels of a sweep, for its figures and its report."""
+"""Creates the panels of a sweep for the figures and the report."""
 
 from collections.abc import Iterator
 
@@ -21,7 +21,7 @@ _BINS = 40
 
 
 def parts(sweep: SweepTable) -> dict[str, SweepTable]:
-    """The rows of each comparison of each scenario that did not fail, by a label."""
+    """Groups the rows of successful runs by scenario and comparison."""
     good = sweep.where([failure is None for failure in sweep.values(FAILURE)])
     keys = list(zip(good.values(ESTIMATION), good.values(SCENARIO), strict=True))
     several = len({scenario for _, scenario in keys}) > 1
@@ -41,7 +41,7 @@ def drawn_indices(sweep: SweepTable) -> list[Index]:
 
 
 def time_of(index: Index) -> str:
-    """The part of the run that a plotted index covers, in words."""
+    """Describes the part of the run for which a plotted index is computed."""
     return "after start-up" if index.settled else "of the whole run"
 
 
@@ -60,7 +60,7 @@ def _varies(sweep: SweepTable, column: ParameterColumn) -> bool:
 
 
 def has_a_value_for_each_run(sweep: SweepTable, column: ParameterColumn) -> bool:
-    """Whether the parameter is drawn for each seed. Then runs are plotted as points, else means."""
+    """Returns whether a parameter is drawn for each seed; such a plot has points, not means."""
     return any(map(column.same_quantity, sweep.parameters(Role.DRAWN)))
 
 
@@ -90,7 +90,7 @@ def distributions(sweep: SweepTable) -> list[Panel]:
 
 
 def against_parameters(sweep: SweepTable) -> Iterator[Panel]:
-    """The error after start-up against each parameter, or against the error of the parameter."""
+    """Creates panels of the error after start-up by each parameter or parameter error."""
     for column in abscissas(sweep):
         index = drawn_indices(sweep)[-1]
         yield Panel(

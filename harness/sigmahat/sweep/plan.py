@@ -24,14 +24,14 @@ _FORMS = "values 1,2,3; a range first:last:count; uniform(low,high); normal(mean
 
 @dataclass(frozen=True)
 class Drawn:
-    """A value that depends on the seed of the run alone."""
+    """A parameter value that is drawn at random and depends only on the seed of the run."""
 
     kind: str  # uniform or normal
     first: float  # lower end, or mean
     second: float  # upper end, or standard deviation
 
     def value(self, name: str, seed: int) -> float:
-        """Value of the parameter of this name under a seed; independent for every name."""
+        """Draws the value of a parameter for a seed; values of different names are independent."""
         generator = np.random.default_rng([seed, crc32(name.encode())])
         draw = generator.uniform if self.kind == "uniform" else generator.normal
         return float(draw(self.first, self.second))
@@ -94,7 +94,7 @@ def _finite(text: str) -> float:
 
 @dataclass(frozen=True)
 class Run:
-    """One co-simulation, with all that another process or machine needs for this run."""
+    """One co-simulation run, with all data that another process or machine needs for the run."""
 
     number: int
     scenario: str
@@ -127,7 +127,7 @@ class Plan:
 
     @property
     def listed(self) -> dict[str, tuple[Value, ...]]:
-        """The parameters that are not drawn."""
+        """Listed values of the parameters that are not drawn at random, by name."""
         return {name: v for name, v in self.parameters.items() if not isinstance(v, Drawn)}
 
     @cached_property
@@ -146,7 +146,7 @@ class Plan:
             yield Run(number, scenario, self.modalities, seed, values)
 
     def samples(self) -> Iterator[Run]:
-        """Few runs with every scenario and every listed value, for a check before the start.
+        """Selects few runs with every scenario and every listed value, for a check at the start.
 
         The first run of each scenario, and the same run with each other listed value.
         """

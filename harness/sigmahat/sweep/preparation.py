@@ -1,4 +1,4 @@
-"""One run of a sweep: its scenario with the parameters of the run, and its execution."""
+"""Prepares and executes one run of a sweep: its scenario with the parameters of the run."""
 
 import hashlib
 import json
@@ -103,12 +103,12 @@ def check(plan: Plan) -> None:
 
 
 def models(scenario: Scenario) -> dict[str, Plant | EstimatorFmu]:
-    """The plant and the estimators of a scenario, by their names as owners of parameters."""
+    """Returns plant and estimators of a scenario, by the prefixes of their parameters."""
     return {PLANT: scenario.plant, **scenario.estimators}
 
 
 def identity(run: Run) -> str:
-    """A text that differs between runs with different results; the run number has no effect."""
+    """Returns a text that identifies the result of a run, independent of the run number."""
     fmus = _fmu_digest(run.scenario)
     every = [fmus, run.scenario, run.modalities, run.seed, run.parameters]
     return json.dumps(every, sort_keys=True)
@@ -116,7 +116,7 @@ def identity(run: Run) -> str:
 
 @lru_cache
 def _fmu_digest(name: str) -> str:
-    """Digest of the installed FMUs of a scenario: 32 hexadecimal digits."""
+    """Computes a digest of the installed FMUs of a scenario: 32 hexadecimal digits."""
     text = hashlib.sha256()
     for fmu in scenario(name).fmus:
         text.update(installed_fmu(fmu).read_bytes())

@@ -30,7 +30,7 @@ runs. For each index: mean and half width of the 95 % interval, over runs that d
 
 @dataclass(frozen=True)
 class SummaryColumn:
-    """A column of the summary as text."""
+    """A column of the printed summary."""
 
     title: str
     words: bool  # whether its cells are words and not numbers
@@ -38,7 +38,7 @@ class SummaryColumn:
 
 
 def means(sweep: SweepTable) -> list[Mean]:
-    """The mean of each group, in the order of the table."""
+    """Computes the mean of each group of runs, in the order of the table."""
     keys: list[Column] = [SCENARIO, *sweep.parameters(Role.LISTED), ESTIMATION]
     groups: dict[tuple[Any, ...], list[int]] = {}
     for row, key in enumerate(zip(*(sweep.values(column) for column in keys), strict=True)):
@@ -56,7 +56,7 @@ def means(sweep: SweepTable) -> list[Mean]:
 
 
 def summary_columns(sweep: SweepTable) -> list[SummaryColumn]:
-    """The summary as text: mean +- half width of the 95 % interval.
+    """Formats the summary as text: mean +- half width of the 95 % interval.
 
     The columns are the indices in the tables of the scenarios.
     """
@@ -112,7 +112,7 @@ def write_summary(sweep: SweepTable, path: Path) -> None:
 
 
 def as_dicts(sweep: SweepTable) -> list[dict[str, object]]:
-    """The means for JSON; units are in the names."""
+    """Returns the means as dictionaries for JSON; keys contain units."""
     return [
         about
         | {title(i): {"mean": mean, "95 % half width": half} for i, (mean, half) in found.items()}
@@ -121,7 +121,7 @@ def as_dicts(sweep: SweepTable) -> list[dict[str, object]]:
 
 
 def conditions(plan: Plan) -> str:
-    """The runs of a plan, in one line."""
+    """Describes the number of runs of a plan in one line."""
     seeds = f"{plan.seeds} seed{'s' if plan.seeds > 1 else ''}"
     names = f"; {', '.join(plan.parameters)}" if plan.parameters else ""
     return f"{', '.join(plan.scenarios)}: {plan.count} runs, {seeds}{names}"

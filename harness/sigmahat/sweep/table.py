@@ -27,7 +27,7 @@ _NAMES_IN_THE_PLANT = {"model.k_s": "spring.k_s", "model.r_0": "spring.r_0", "mo
 
 
 def name_in_the_plant(parameter: str) -> str:
-    """Name in the plant of a parameter of an estimator."""
+    """Returns the name of the plant parameter that an estimator parameter describes."""
     return _NAMES_IN_THE_PLANT.get(parameter, parameter)
 
 
@@ -54,7 +54,7 @@ class ParameterColumn:
         return f"{self.owner}.{self.parameter}"
 
     def same_quantity(self, other: ParameterColumn) -> bool:
-        """Whether both columns are of one parameter, with any owner."""
+        """Returns whether two columns have the same parameter, of any owner."""
         return name_in_the_plant(self.parameter) == name_in_the_plant(other.parameter)
 
 
@@ -63,7 +63,7 @@ Column = str | ParameterColumn | Index
 
 
 def title(column: Column) -> str:
-    """Title of a column, in tables and files."""
+    """Formats the title of a column for tables and files."""
     if isinstance(column, str):
         return column
     name = column.field if isinstance(column, Index) else column.name
@@ -83,7 +83,7 @@ class SweepTable:
     columns: Sequence[Column]  # columns in the order of the table
 
     def parameters(self, *roles: Role) -> list[ParameterColumn]:
-        """Columns of parameters with these roles."""
+        """Returns the columns of parameters with the given roles."""
         return [
             column
             for column in self.columns
@@ -98,7 +98,7 @@ class SweepTable:
         return np.asarray(self.table[title(column)].to_numpy(), dtype=np.float64)
 
     def where(self, rows: Sequence[bool]) -> SweepTable:
-        """Some of the rows."""
+        """Returns a table with the selected rows only."""
         return SweepTable(self.table.filter(pa.array(rows, pa.bool_())), self.columns)
 
 
@@ -106,7 +106,7 @@ _FAILED = Indices(*[math.nan] * len(INDICES))
 
 
 def of_outcomes(plan: Plan, outcomes: Sequence[Outcome]) -> SweepTable:
-    """The table of a complete sweep from its outcomes; rows in the order of the plan."""
+    """Creates the table of a complete sweep from its outcomes, in the order of the plan."""
     scenarios = {name: reduced(name, plan.modalities) for name in plan.scenarios}
     usual = {
         name: {o: installed(m.fmu).parameters(m.start) for o, m in models(each).items()}
@@ -165,14 +165,14 @@ def _error(name: str, estimator: Mapping[str, Value], plant: Mapping[str, Value]
 
 
 def _meaning(column: Column) -> dict[bytes, str] | None:
-    """Metadata of a column in a file: the title alone does not describe a parameter."""
+    """Returns metadata of a file column, because a title does not describe a parameter fully."""
     if not isinstance(column, ParameterColumn):
         return None
     return {_MEANING: json.dumps({"parameter": asdict(column)})}
 
 
 def _column(field: pa.Field) -> Column:
-    """A column of a file. Raises KeyError, TypeError or ValueError for another meaning."""
+    """Reads a column of a file. Raises KeyError, TypeError or ValueError for wrong metadata."""
     meaning = json.loads((field.metadata or {}).get(_MEANING, "{}"))
     if "parameter" in meaning:
         parameter = meaning["parameter"]
@@ -189,12 +189,12 @@ def _array(column: Column, values: Sequence[Any]) -> pa.Array:
 
 
 def write(sweep: SweepTable, path: Path) -> None:
-    """Writes Parquet; the same table gives the same bytes."""
+    """Writes a table as Parquet; equal tables give equal bytes."""
     pa.parquet.write_table(sweep.table, path)
 
 
 def read(path: Path) -> SweepTable:
-    """Reads a file of write(). Raises ValueError for another file, OSError if it is missing."""
+    """Reads a table from write(). Raises ValueError for other files, OSError without a file."""
     try:
         table = pa.parquet.read_table(path)
         columns = [_column(field) for field in table.schema]

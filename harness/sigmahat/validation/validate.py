@@ -1,4 +1,4 @@
-"""The job of `sigmahat validate`: compares another log of a joint with what was learned before."""
+"""The job of `sigmahat validate`: compares another log of a joint with an earlier estimate."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _SHORTEST = 2.0
 
 @dataclass(frozen=True)
 class TorqueError:
-    """Predicted less measured torque of the spring."""
+    """Difference of predicted and measured torque of the spring."""
 
     rms: float  #: Root mean square of the error [N.m].
     std: float  #: Standard deviation of the measured torque [N.m].
@@ -106,12 +106,12 @@ def _below(values: Array, used: NDArray[np.bool_], T: float) -> Array:
 
 @dataclass(frozen=True)
 class Agreement:
-    """The stiffness that was learned before, compared with the stiffness of a log alone."""
+    """Comparison of the stiffness from earlier logs with the stiffness from one log alone."""
 
     before: tuple[float, float]
-    """Stiffness learned before, and half the width of its interval; both are medians [N.m/rad]."""
+    """Stiffness from earlier logs, and half the width of its interval; medians [N.m/rad]."""
     alone: tuple[float, float]
-    """Stiffness of the log alone, and half the width of its interval; both are medians."""
+    """Stiffness from one log alone, and half the width of its interval; both are medians."""
     alone_in_before: float
     """Fraction of instants at which the interval of `before` contains the stiffness of `alone`."""
     before_in_alone: float
@@ -153,22 +153,22 @@ def agreement(
 
 @dataclass(frozen=True)
 class Validation:
-    """Comparison of a log with what was learned before."""
+    """Comparison of a log with the estimate from earlier logs."""
 
     log: Path  #: The file.
     configuration: Path  #: File of the configuration of the estimator.
-    start_from: Path  #: The file of the learned state.
-    learned_from: Sequence[str]  #: Logs from which this state was learned.
+    start_from: Path  #: File of the estimator state from earlier logs.
+    learned_from: Sequence[str]  #: Logs from which the estimator state was computed.
     repeated: bool  #: Whether the log is among these logs: then the log confirms nothing.
     ticks: int  #: Number of ticks of the estimator over the log.
     torque: TorqueError | None
-    """Error of the torque by the learned curve; None if the regression used no sample."""
+    """Error of the torque by the curve of earlier logs; None if the regression used no sample."""
     torque_below: TorqueError | None
     """Error of this torque below 2 Hz; None if the log is too short."""
-    stiffness: Agreement  #: The learned stiffness compared with the stiffness of this log alone.
+    stiffness: Agreement  #: Stiffness from earlier logs compared with this log.
     notes: Sequence[str]  #: Sentences about the processing of the samples of the log.
     turned: str | None
-    """A sentence if a counter began in another turn than in the logs before, else None."""
+    """Returns a sentence if a counter began in another turn than in earlier logs, else None."""
 
     @property
     def agree(self) -> bool | None:

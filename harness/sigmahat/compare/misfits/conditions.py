@@ -50,7 +50,7 @@ def all_misfits(experiment: Experiment) -> Experiment:
     def uniform(most: float) -> float:
         return float(rng.uniform(0.0, most))
 
-    # The order is that of the random numbers.
+    # The order determines which random numbers are drawn.
     plant = {
         "sensor.tau_gain": 1 + normal(0.02),
         "sensor.tau_bias": normal(0.01) * joint.torque,
@@ -135,7 +135,7 @@ def _hardening(n: int, experiment: Experiment) -> Experiment:
 def _control(
     experiment: Experiment, link_velocity: bool = False, gravity: bool = False
 ) -> Experiment:
-    """PD control of the motor position, with smaller amplitudes at higher frequencies."""
+    """Sets PD control of the motor position, with smaller amplitudes at higher frequencies."""
     joint, share = experiment.joint, 0.6 if gravity else 1.0
     terms = [
         replace(s, amplitude=3 * share * s.amplitude / joint.torque / (1 + omega))

@@ -1,4 +1,4 @@
-"""A joint, its command, how it is measured, and what the estimator is given: an experiment."""
+"""Defines an experiment: a joint, its command, the measurement, and estimator settings."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ class Experiment:
     duration: float = 20.0  # [s]
     rest: float = 0.0  # time until the torque begins [s]
     drive: Drive = Drive.LINEAR
-    control: Control | None = None  # the drive holds its torque; None: that of the command
+    control: Control | None = None  # control of the position; None: the torque is the command
     late: float = 0.0  # delay of the measured torque [s], below 0: it is early; Drive.LINEAR only
     jitter: float = 0.0  # standard deviation of the sample times, divided by T [1]
     load: float = 0.0  # constant external torque on the link [N.m]
@@ -139,7 +139,7 @@ def _multisine(
 ) -> Sines:
     """Sines at random frequencies: one sine in each of equal parts of the band [Hz] on a log axis.
 
-    The amplitudes add up to the peak. The number of sines is between the two counts.
+    The sum of the amplitudes is the peak. The number of sines is between the two counts.
     """
     n = int(rng.integers(count[0], count[1] + 1))
     low, high = map(math.log, band)

@@ -41,7 +41,7 @@ def draw(rows: Sequence[Row]) -> Figure:
 
 
 def _regions(axes: Axes, limits: tuple[float, float]) -> None:
-    """The dangerous corner, and the line where error and claim are equal."""
+    """Draws the dangerous corner, and the line on which error and sigma_std are equal."""
     low, high = limits
     claim, error = 100 * DANGEROUS_CLAIM, 100 * DANGEROUS_ERROR
     axes.add_patch(Rectangle((low, error), claim - low, high - error, color=_GREY, alpha=0.25))

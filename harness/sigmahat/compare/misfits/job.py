@@ -26,12 +26,12 @@ SETTLED = 2.0  # time after the start of the torque from which an estimate is ju
 DANGEROUS_ERROR, DANGEROUS_CLAIM = 0.1, 0.02
 """Limits of a dangerous instant: error above, and sigma_std / estimate below its limit [1]."""
 WRONG = 0.2  # error above which a confident estimate is wrong [1]
-_LARGEST = 10.0  # a larger relative error or claim counts as this value
+_LARGEST = 10.0  # upper limit of a relative error or of a relative sigma_std
 
 
 @dataclass(frozen=True)
 class Score:
-    """Sums over instants. Error and claim are relative to the true stiffness."""
+    """Sums over instants. Error and claim (sigma_std) are relative to the true stiffness."""
 
     instants: int = 0
     error: float = 0.0  # squares of the error [1]
@@ -149,19 +149,19 @@ def compare(
 def pairs(
     conditions: Sequence[Condition], joints: Sequence[Joint]
 ) -> list[tuple[Condition, Joint]]:
-    """The rows of a table: each condition with the joints that can have its misfit."""
+    """Returns the rows of a table: each condition with the joints that can have its misfit."""
     return [(each, joint) for each in conditions for joint in joints if joint in each.joints]
 
 
 def run_once(condition: int, joint: int, seed: int) -> Score:
-    """The score of one run, given by indices in CONDITIONS and JOINTS."""
+    """Computes the score of one run, given by indices in CONDITIONS and JOINTS."""
     row = CONDITIONS[condition]
     experiment = row.change(draw(JOINTS[joint], seed))
     return estimate(experiment, run(experiment), row.torque_gain)
 
 
 def estimate(experiment: Experiment, motion: Motion, torque_gain: float) -> Score:
-    """The score of FilteredRegression on the samples of a run; torque_gain as for settings()."""
+    """Computes the score of FilteredRegression on a run; torque_gain as for settings()."""
     values = np.column_stack(list(motion.measured.values()))
     samples = Samples(experiment.T, list(motion.measured), values)
     with Slave(installed(ESTIMATOR), "FilteredRegression") as slave:

@@ -63,7 +63,7 @@ def run(experiment: Experiment) -> Motion:
 
 
 def peak_deformation(experiment: Experiment) -> float:
-    """Largest |phi| of the experiment [rad]."""
+    """Computes the largest |phi| of the experiment [rad]."""
     return float(np.abs(run(experiment).phi).max())
 
 
@@ -73,7 +73,7 @@ def _ticks(experiment: Experiment, first: int, end: int) -> Array:
 
 
 def _sample_times(experiment: Experiment, ticks: Array) -> Array:
-    """Times [s] with jitter, which stays below half a period so that they increase."""
+    """Adds jitter to the sample times [s]; jitter is less than half a period, so times increase."""
     rng = np.random.default_rng(experiment.seed)
     off = experiment.jitter * rng.standard_normal(len(ticks))
     off = np.clip(off, -_LARGEST_JITTER, _LARGEST_JITTER)
@@ -82,7 +82,7 @@ def _sample_times(experiment: Experiment, ticks: Array) -> Array:
 
 
 def _torque(experiment: Experiment, t: Array) -> Array:
-    """Torque command at t [N.m], linear between the sample times k T."""
+    """Computes the torque command at t [N.m], linear between the sample times k T."""
     if experiment.control is not None:
         return np.zeros_like(t)
     around = math.ceil(_MARGIN / experiment.T)
@@ -93,7 +93,7 @@ def _torque(experiment: Experiment, t: Array) -> Array:
 
 
 def _start(experiment: Experiment) -> dict[str, float | int]:
-    """Start values: at rest, the spring deformed by the load and the weight."""
+    """Computes start values: at rest, with the spring deformed by load and weight."""
     control = experiment.control
     theta = float(control.reference(np.zeros(1))[0]) if control else 0.0
     weight = experiment.plant.get("link.mgl", 0.0) * math.sin(theta)

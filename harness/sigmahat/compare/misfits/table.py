@@ -16,7 +16,7 @@ IN_FILE = {"wrong": "confident and over 20 % wrong"}  # titles in a file, if not
 
 
 def table(rows: Sequence[Row]) -> str:
-    """The rows as text, with a part for each group; each part ends with the means by joint."""
+    """Formats the rows as text by group; each group ends with the means by joint."""
     cells = [["", *(title(name, "%") for name in FIGURES)]]
     headings: list[str] = []
     for group in Group:

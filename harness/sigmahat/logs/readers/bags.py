@@ -1,9 +1,9 @@
-"""ROS 2 bags: a folder with SQLite or MCAP files, or one MCAP file.
+"""Reads ROS 2 bags: a folder with SQLite or MCAP files, or one MCAP file.
 
-Every number of a message is a column, such as "/knee/angle.data". Elements of arrays have an index,
-or in a sensor_msgs/JointState the name of the joint: "/joint_states.position[knee]". The times of a
-topic are a column too, "/joint_states.time", in seconds since the beginning of the bag. Times are
-from the headers of the messages, or without headers from the recording.
+Every number of a message becomes a column, such as "/knee/angle.data". Elements of arrays have an
+index, or in a sensor_msgs/JointState the name of the joint: "/joint_states.position[knee]". Each
+topic has a column of times, such as "/joint_states.time", in seconds since the start of the bag.
+Times are from the headers of the messages; without headers, times of the recording are used.
 """
 
 from collections import defaultdict
@@ -17,7 +17,7 @@ from sigmahat.logs.log import LogError, LogInMemory
 
 
 def read_bag(path: Path) -> LogInMemory:
-    """Raises LogError for a bag that is damaged or holds no numbers."""
+    """Reads a ROS 2 bag. Raises LogError for a bag that is damaged or contains no numbers."""
     from rosbags.highlevel import AnyReader, AnyReaderError
     from rosbags.typesys import Stores, get_typestore
 
@@ -52,7 +52,7 @@ def read_bag(path: Path) -> LogInMemory:
 
 
 def _stamp(message: Any) -> int | None:
-    """Time in the header [ns]; None if there is no header, or its time was not set."""
+    """Returns the time in the header of a message [ns]; None without a header or a set time."""
     stamp = getattr(getattr(message, "header", None), "stamp", None)
     if stamp is None:
         return None
@@ -60,7 +60,7 @@ def _stamp(message: Any) -> int | None:
 
 
 def _numbers(message: Any, above: str = "") -> Iterator[tuple[str, float]]:
-    """Paths and values of the numbers in a message, without its header."""
+    """Yields path and value of each number in a message, without the header of the message."""
     names = getattr(message, "name", None)
     for field, value in vars(message).items():
         if field in ("header", "layout") or field.startswith("__"):

@@ -1,4 +1,4 @@
-"""Opens a log. The format is found from the contents of the file, not from its name."""
+"""Opens a log. The format is determined by the contents of the file, not by the file name."""
 
 from pathlib import Path
 

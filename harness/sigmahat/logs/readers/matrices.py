@@ -1,12 +1,12 @@
-"""MAT files of MATLAB (v5 to v7.3) and HDF5 files.
+"""Reads MAT files of MATLAB (v5 to v7.3) and HDF5 files.
 
-A vector is a column. A matrix is as many columns as its shorter side is long: "x[0]", "x[1]". In a
-structure or group, the path is part of the name: "joint.theta".
+A vector becomes one column. A matrix becomes columns "x[0]", "x[1]" along its longer side. In a
+structure or group, the path is part of the name of the column: "joint.theta".
 
 The elements of a MAT file of version 5 to 7 are checked before scipy reads the file. The reason is
-that scipy unpacks variables of any size, and uses the kind of an element as an index. After a head
-of 128 bytes, each variable has a tag of two integers, kind and number of bytes, and then its bytes.
-A variable is a sequence of such elements again.
+that scipy unpacks variables of any size, and uses the kind of an element as an index. After a
+header of 128 bytes, each variable has a tag of two integers, kind and number of bytes, and data.
+The data of a variable are a sequence of elements, again with tags.
 """
 
 import struct
@@ -32,7 +32,7 @@ _MOST_ELEMENTS = 1_000_000
 _NUMBERS = {"double", "single", "logical"} | {
     f"{u}int{n}" for u in ("", "u") for n in (8, 16, 32, 64)
 }
-_MOST_PER_BYTE = 8  # of the file
+_MOST_PER_BYTE = 8  # bytes without compression per byte of the file
 
 Buffer = bytes | bytearray
 
@@ -40,7 +40,7 @@ Buffer = bytes | bytearray
 def check_packed(path: Path) -> None:
     """Raises LogError for a file that is far larger without compression, or has unknown elements.
 
-    scipy reports other damage.
+    Any other damage of the file is found by scipy.
     """
     size = path.stat().st_size
     most = max(_MOST if _is_plain(path) else _MOST_OF_PARTS, _MOST_PER_BYTE * size)
@@ -73,7 +73,7 @@ def check_packed(path: Path) -> None:
 
 
 def _unpacked(packed: Buffer, most: int) -> Buffer:
-    """The bytes up to the first damage, which scipy reports; not many more than most."""
+    """Unpacks bytes up to the first damage, or until their number is larger than `most`."""
     unpack, found = zlib.decompressobj(), bytearray()
     with suppress(zlib.error):
         for first in range(0, len(packed), _PIECE):
@@ -84,20 +84,20 @@ def _unpacked(packed: Buffer, most: int) -> Buffer:
 
 
 def _kinds(variable: Buffer, tag: struct.Struct) -> Iterator[int]:
-    """The kinds of the elements of a variable."""
+    """Yields the kinds of the elements of a variable in a MAT file."""
     at = 0
     while at + tag.size <= len(variable):
         kind, length = tag.unpack_from(variable, at)
         at += tag.size
         if kind >> 16:  # up to four bytes in the tag itself
             kind &= 0xFFFF
-        elif kind != _MATRIX:  # the elements of a matrix follow
+        elif kind != _MATRIX:  # after the tag of a matrix, the tags of its elements follow
             at += -(-length // 8) * 8
         yield kind
 
 
 def _is_plain(path: Path) -> bool:
-    """Whether all variables are arrays of numbers: memory is then proportional to the bytes."""
+    """Returns whether all variables are arrays of numbers, which need little memory per byte."""
     import scipy.io
 
     try:
@@ -107,13 +107,13 @@ def _is_plain(path: Path) -> bool:
 
 
 _MOST_COLUMNS = 256  # limit of one matrix; a larger matrix is an image, not a log
-_DEEPEST = 32  # groups of HDF5 in groups
+_DEEPEST = 32  # largest number of nested groups of HDF5
 
 Named = Iterator[tuple[str, NDArray[np.generic]]]
 
 
 def read_mat(path: Path) -> LogInMemory:
-    """A MAT file of version 5 to 7. Raises LogError if it is damaged or holds no numbers."""
+    """Reads a MAT file of version 5 to 7. Raises LogError for damage, or without any numbers."""
     import scipy.io
 
     check_packed(path)
@@ -137,7 +137,7 @@ def _fields(path: Path, name: str, value: Any) -> Named:
 
 
 def read_hdf5(path: Path) -> LogInMemory:
-    """An HDF5 file, or a MAT file of version 7.3. Raises LogError as read_mat does."""
+    """Reads an HDF5 file, or a MAT file of version 7.3. Raises LogError as read_mat does."""
     import h5py
 
     def walk(group: h5py.Group, above: str, depth: int = 0) -> Named:
@@ -181,7 +181,7 @@ def _elsewhere(path: Path, name: str, file: str) -> LogError:
 
 
 def _columns(path: Path, name: str, array: Any) -> Named:
-    """Columns of an array or an HDF5 data set; no columns if it cannot be a signal."""
+    """Yields the columns of an array or an HDF5 data set; none for an array that is no signal."""
     if array.dtype.kind not in "biuf" or not 1 <= array.ndim <= 2 or max(array.shape) < 2:
         return
     if min(array.shape) > _MOST_COLUMNS and array.ndim == 2:

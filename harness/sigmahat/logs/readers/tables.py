@@ -1,4 +1,4 @@
-"""CSV and Parquet files."""
+"""Reads logs in CSV and Parquet files."""
 
 import weakref
 from collections import Counter
@@ -29,9 +29,9 @@ from sigmahat.logs.log import (
 )
 
 _BLOCK = 1 << 20  # bytes of a CSV file that are parsed at a time
-_ALWAYS_READ = 100_000_000  # bytes without compression that every file may have
+_ALWAYS_READ = 100_000_000  # uncompressed size up to which a file is not checked [bytes]
 _LINES = 20  # lines that are checked before the text is parsed
-_BUFFER = 1 << 16  # bytes of a column that are read from a file at a time; else a whole row group
+_BUFFER = 1 << 16  # bytes of a column that are read at a time, instead of a whole row group
 _ROWS = 1 << 16  # rows of a column that are read at a time
 _FEW = 100  # rows with text that are checked at a time
 
@@ -66,7 +66,7 @@ class ParquetLog(Log):
         return numbers(self.path, name, column)
 
     def _read_in_parts(self, name: str) -> Array:
-        """A column that needs no look at all of its numbers, in half of the memory."""
+        """Reads a column part by part, which needs half of the memory."""
         values, row = np.empty(self.columns[name]), 0
         for batch in self._file.iter_batches(_ROWS, columns=[name], use_threads=False):
             part = pa.chunked_array([batch.column(0)])
@@ -75,7 +75,7 @@ class ParquetLog(Log):
         return values
 
     def _text(self, name: str) -> LogError:
-        """The error for a column of text, which need not fit the memory as a whole."""
+        """Creates the error for a column of text, and reads the column part by part."""
         rows = 0
         for batch in self.batches([name], _FEW):
             found = first_text(pa.chunked_array([batch.column(0)]))
@@ -99,7 +99,7 @@ class ParquetLog(Log):
             raise LogError(f"{self.path}: damaged ({error})") from error
 
     def _with_texts(self, batch: pa.RecordBatch) -> pa.RecordBatch:
-        """A batch with its texts written out."""
+        """Replaces dictionaries of a batch by the texts, if the texts are not too long."""
         for i, field in enumerate(batch.schema):
             if pa.types.is_dictionary(field.type):
                 texts = batch.column(i).dictionary
@@ -115,7 +115,7 @@ class ParquetLog(Log):
 
 @dataclass(frozen=True)
 class Dialect:
-    """Format of a text file with a table."""
+    """The format of a text file that contains a table."""
 
     names: Sequence[str]  # names of the columns; with a row of units, name and unit
     delimiter: str  # character between the columns
@@ -125,16 +125,16 @@ class Dialect:
 
 
 class CsvLog(Log):
-    """A text file: one line that names the columns, then numbers between , or ; or tabs.
+    """A text file: one line with names of columns, and rows of numbers separated by , or ; or tabs.
 
-    With ; as delimiter, numbers may have decimal commas. A second line may have units.
+    With ; as delimiter, numbers may have decimal commas. A second line may contain units.
 
-    The text is parsed once, into a temporary Parquet file: so a long log needs little memory. Only
-    a column that does not begin with numbers, such as dates, is parsed again when it is read.
+    A temporary Parquet file with the parsed text limits the memory for a long log. Only a column
+    that does not begin with numbers, such as dates, is parsed again when the column is read.
     """
 
     def __init__(self, path: Path) -> None:
-        """Raises LogError for a file that is no such table."""
+        """Raises LogError if the text file does not contain a table."""
         self.dialect = dialect(path)  # format of the file
         names = self._names = list(self.dialect.names)
         self._cut: list[int] = []
@@ -158,7 +158,7 @@ class CsvLog(Log):
             )
 
     def _left_out(self, row: pa.csv.InvalidRow) -> str:
-        """Leaves out one row that is too short, such as the last row of a stopped recording."""
+        """Skips one row that is too short, such as the last row of an interrupted recording."""
         if row.actual_columns >= row.expected_columns or self._cut:
             return "error"
         self._cut.append(row.actual_columns)
@@ -175,7 +175,7 @@ class CsvLog(Log):
         yield from self._copy.iter_batches(rows, columns=list(names), use_threads=False)
 
     def _copied(self, file: IO[bytes]) -> pa.parquet.ParquetFile:
-        """All columns in Parquet, numbers as such, other columns as text."""
+        """Writes all columns into a temporary Parquet file; columns without numbers become text."""
         try:
             with self._stream({}) as stream:
                 kinds = {field.name: field.type for field in stream.schema}
@@ -187,7 +187,7 @@ class CsvLog(Log):
                 small = [name for name in integers if fits_float64(first[name])]
                 self._write(file, {**kinds, **dict.fromkeys(small, pa.float64())})
         except pa.ArrowInvalid:
-            # A column has text after its first numbers, or damage, which fails again here.
+            # A column has text after numbers, or the file is damaged, which fails again here.
             try:
                 self._write(file, {})
             except pa.ArrowInvalid as error:
@@ -200,7 +200,7 @@ class CsvLog(Log):
         return pa.parquet.ParquetFile(file, pre_buffer=False)
 
     def _write(self, file: IO[bytes], kinds: Mapping[str, pa.DataType]) -> None:
-        """Writes the copy; columns without a kind of numbers become text."""
+        """Writes the Parquet copy; columns without a numeric type become text."""
         types = dict.fromkeys(self._names, pa.string())
         types |= {name: kind for name, kind in kinds.items() if _numeric(kind)}
         file.seek(0)
@@ -215,7 +215,7 @@ class CsvLog(Log):
                 writer.write_batch(block)
 
     def _stream(self, types: Mapping[str, pa.DataType]) -> pa.csv.CSVStreamingReader:
-        """A reader of all columns; without types the first block decides."""
+        """Opens a reader of all columns; the first block determines types that are not given."""
         self._cut.clear()  # the text is parsed more than once
         options = pa.csv.ConvertOptions(column_types=types, decimal_point=self.dialect.decimal)
         read = pa.csv.ReadOptions(
@@ -228,7 +228,7 @@ class CsvLog(Log):
         return pa.csv.open_csv(self.path, read, self._parse, options)
 
     def _parsed(self, copy: pa.parquet.ParquetFile, name: str) -> pa.ChunkedArray:
-        """A column that a copy holds as text, in the type that fits all of its values."""
+        """Parses a text column of the Parquet copy; the type fits all values of the column."""
         text = pa.BufferOutputStream()
         pa.csv.write_csv(copy.read([name], use_threads=False), text)
         options = pa.csv.ConvertOptions(decimal_point=self.dialect.decimal)
@@ -236,7 +236,7 @@ class CsvLog(Log):
 
 
 def _first_lines(path: Path) -> tuple[list[str], str]:
-    """The first lines, and the encoding. Raises LogError for a file that is no text."""
+    """Reads the first lines and finds the encoding. Raises LogError for a binary file."""
     for encoding in ("utf-8", "windows-1252"):
         with path.open(encoding=encoding, newline="") as file, suppress(UnicodeDecodeError):
             lines = [file.readline(_BLOCK) for _ in range(_LINES)]
@@ -248,7 +248,7 @@ def _first_lines(path: Path) -> tuple[list[str], str]:
 
 
 def dialect(path: Path) -> Dialect:
-    """The format of a text file with a table. Raises LogError if the file has no table."""
+    """Detects the format of a text file. Raises LogError if the file contains no table."""
     lines, encoding = _first_lines(path)
     for i, line in enumerate(lines, 1):
         if len(line) >= _BLOCK:
@@ -282,12 +282,12 @@ def dialect(path: Path) -> Dialect:
 
 
 def _may_be_value(cell: str) -> bool:
-    """Whether a cell begins like a number, a date or a missing value, and not like a unit."""
+    """Returns whether a cell may be a number, a date or a missing value instead of a unit."""
     return cell[:1].isdigit() or (is_number(cell.replace(",", ".")) and cell != "")
 
 
 def _is_flat(kind: pa.DataType) -> bool:
-    """Whether a column of this type can be a signal, or a note beside it."""
+    """Returns whether a column of this type contains numbers or text, and no lists."""
     return _is_text(kind) or not (kind.num_fields or pa.types.is_fixed_size_binary(kind))
 
 
@@ -297,7 +297,7 @@ def _is_text(kind: pa.DataType) -> bool:
 
 
 def _bytes(metadata: Any, name: str) -> int:
-    """Upper limit of the size of a column of a Parquet file without compression [bytes]."""
+    """Returns an upper limit of the uncompressed size of a column of a Parquet file [bytes]."""
     groups = [metadata.row_group(i) for i in range(metadata.num_row_groups)]
     whole = sum(group.total_byte_size for group in groups)
     # Only for large files: pyarrow aborts the process if the metadata of a column are damaged.

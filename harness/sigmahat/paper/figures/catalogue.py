@@ -185,7 +185,7 @@ FIGURES: dict[str, Callable[[Recording], Figure]] = {
     "fig3-deformation": _stacked(_DEFORMATION),
     "fig4-velocity": _stacked(
         panel(_VELOCITY, legend=Axes.legend),
-        # Where the quantisation is largest compared with the velocity.
+        # Time interval in which the quantisation is largest compared with the velocity.
         panel(_VELOCITY, partial(_reversal, "theta_dot", 0.05), "at a reversal"),
     ),
     "fig5-flexibility-torque": _stacked(
