@@ -59,7 +59,7 @@ class EstimateWriter(AbstractContextManager["EstimateWriter"]):
         self._row = self._tick = 0
         self._writer: Any = None
         self._thread = ThreadPoolExecutor(1)  # writes a table while the next ticks are computed
-        self._written: Future[None] | None = None
+        self._written: Future[None] = self._thread.submit(lambda: None)  # the last table
 
     def add(self, outputs: Mapping[str, NDArray[Any]]) -> None:
         """Writes the rows of the next ticks, with the outputs of these ticks."""
@@ -85,14 +85,8 @@ class EstimateWriter(AbstractContextManager["EstimateWriter"]):
         if self._writer is None:
             writer = pa.csv.CSVWriter if self._dialect else pa.parquet.ParquetWriter
             self._writer = writer(self._path, table.schema, **self._options(table))
-        self._finish()
+        self._written.result()  # waits, and raises the error of the last table, if any
         self._written = self._thread.submit(self._writer.write_table, table)
-
-    def _finish(self) -> None:
-        """Waits until the last table is written. Raises the error of this writing, if any."""
-        if self._written is not None:
-            self._written.result()
-            self._written = None
 
     def _options(self, first: pa.Table) -> dict[str, Any]:
         if self._dialect is not None:
@@ -105,7 +99,7 @@ class EstimateWriter(AbstractContextManager["EstimateWriter"]):
     def __exit__(self, _kind: object, error: BaseException | None, _trace: object) -> None:
         try:
             if error is None:
-                self._finish()
+                self._written.result()
         finally:
             self._thread.shutdown()
             if self._writer is not None:
