@@ -8,7 +8,7 @@ from typing import Any
 Proposal = float | bool | str  # a value of a key, as it stands in the configuration
 
 
-class Severity(Enum):
+class Severity(str, Enum):
     """Severity of a finding."""
 
     WRONG = "wrong"  #: The configuration contradicts the log.
@@ -17,7 +17,7 @@ class Severity(Enum):
     NOTE = "note"  #: Worth knowing; the configuration may be right.
 
 
-class Kind(Enum):
+class Kind(str, Enum):
     """The property of log or configuration that was checked."""
 
     AT_REST = "positions that do not change"
@@ -96,9 +96,5 @@ def as_dict(checked: Checked) -> dict[str, Any]:
         "wrong": checked.is_wrong,
         "ticks": checked.ticks,
         "samplePeriod [s]": checked.T,
-        "findings": [
-            asdict(f)
-            | {"kind": f.kind.value, "severity": f.severity.value, "others": dict(f.others)}
-            for f in checked.findings
-        ],
+        "findings": [asdict(f) | {"others": dict(f.others)} for f in checked.findings],
     }
