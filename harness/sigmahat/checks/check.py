@@ -13,14 +13,14 @@ from sigmahat.checks.dynamics import dynamics
 from sigmahat.checks.findings import Checked, Finding, Kind, Severity
 from sigmahat.checks.relation import relation, slope_of
 from sigmahat.checks.text import DOUBTS
-from sigmahat.checks.view import View, all_parameters, view
+from sigmahat.checks.view import View, view
 from sigmahat.fmi.instance import FmuError, Slave, Value, installed
 from sigmahat.identification.noise import variance
 from sigmahat.identification.quantities import WIDE
 from sigmahat.logs.configuration import PORTS, Configuration
 from sigmahat.logs.data_sheet import absent, exact
 from sigmahat.logs.log import Log, LogError
-from sigmahat.logs.replay import parameters, play
+from sigmahat.logs.replay import all_parameters, parameters, play
 
 _INERTIA = (Kind.INERTIA, Kind.TORQUE_SCALE)
 _MISFIT = 3.0  # misfit of the model; effects of real joints cause up to about 2

@@ -5,11 +5,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sigmahat.fmi.instance import Value, installed
+from sigmahat.fmi.instance import Value
 from sigmahat.identification.regression import Signals, signals_of
 from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.log import Log
-from sigmahat.logs.replay import parameters
+from sigmahat.logs.replay import all_parameters
 from sigmahat.logs.sampling import Samples, sample
 
 _MOST = 60_000
@@ -46,12 +46,6 @@ def view(log: Log, configuration: Configuration) -> View:
     samples = _liveliest(sample(log, configuration, float(every["samplePeriod"])))
     torque = "tau_e_sensor" if every["modality"] == "Sensor" else "tau"
     return View(log, configuration, every, samples, list(signals_of(samples, every, torque)))
-
-
-def all_parameters(configuration: Configuration) -> dict[str, Value]:
-    """Returns all parameters of the estimator, also parameters without a configured value."""
-    fmu = installed("StiffnessEstimator")
-    return fmu.parameters(parameters(fmu, configuration))
 
 
 def _liveliest(samples: Samples) -> Samples:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from sigmahat.files.output import sha256, write_json
 from sigmahat.files.tables import write_csv
 from sigmahat.fmi.instance import Slave, Value, installed
+from sigmahat.fmi.sample_loop import present_values
 from sigmahat.fmi.series import Series
 from sigmahat.joint import sheet
 from sigmahat.joint.curve import (
@@ -30,7 +31,7 @@ from sigmahat.logs.job import Replay, StiffnessChange
 from sigmahat.logs.learned import LEARNED, read_learned, write_learned
 from sigmahat.logs.log import Log
 from sigmahat.logs.output import MCAP, REPLAYED, EstimateWriter, Replayed, mcap_file
-from sigmahat.logs.replay import OUTPUTS, coefficients
+from sigmahat.logs.replay import OUTPUTS
 
 _MOTOR = ("D_theta_hat", "B_hat", "tau_coulomb_hat")
 
@@ -171,6 +172,8 @@ def estimate(
 def _result(replay: Replay, found: Curve) -> Estimate:
     samples, statistics, every = replay.samples, replay.statistics, replay.every
     last, doubts, before = statistics.last, statistics.doubts, [e.file for e in replay.logs[:-1]]
+    n, m = int(every["rls.n"]), int(every["rls.m"])
+    eta = present_values(replay.slave, (f"eta[{i},{j}]" for i in range(n) for j in range(m)))
     continued = [f"continued from what was learned from {', '.join(before)}"] if before else []
     return Estimate(
         log=replay.log.path,
@@ -187,7 +190,7 @@ def _result(replay: Replay, found: Curve) -> Estimate:
         tau_e_range=statistics.later["tau_e"],
         phi_range=statistics.later["phi"],
         epsilon_rms=statistics.rms,
-        eta=coefficients(replay.slave, int(every["rls.n"]), int(every["rls.m"])),
+        eta=np.reshape([*eta.values()], (n, m)).tolist(),
         motor={name: last[name] for name in _MOTOR},
         joint={name: last[name] for name in last if name.endswith("_hat") and name not in _MOTOR},
         sigma_per_gain=last["sigma_per_gain"],

@@ -8,8 +8,8 @@ import numpy as np
 from fmpy import fmi2
 from numpy.typing import NDArray
 
-from sigmahat.fmi.instance import Fmu, Slave, Value
-from sigmahat.fmi.sample_loop import Recorder, SampleLoop, present_values, step_times
+from sigmahat.fmi.instance import Fmu, Slave, Value, installed
+from sigmahat.fmi.sample_loop import Recorder, SampleLoop, step_times
 from sigmahat.logs.configuration import PORTS, Configuration
 from sigmahat.logs.log import LogError
 from sigmahat.logs.sampling import Samples
@@ -63,6 +63,12 @@ def parameters(fmu: Fmu, configuration: Configuration) -> dict[str, Value]:
         raise LogError(f"{configuration.path}: {error}") from error
 
 
+def all_parameters(configuration: Configuration) -> dict[str, Value]:
+    """Returns all parameters of the estimator, also parameters without a configured value."""
+    fmu = installed("StiffnessEstimator")
+    return fmu.parameters(parameters(fmu, configuration))
+
+
 def play(
     slave: Slave, samples: Samples, chunk: int, t_0: float = 0.0, more: Sequence[str] = ()
 ) -> Iterator[dict[str, NDArray[Any]]]:
@@ -87,12 +93,6 @@ def play(
             loop.run(0, len(values))
         columns = recorder.columns()
         yield {**columns, **{name: columns[name].astype(bool) for name in FLAGS}}
-
-
-def coefficients(slave: Slave, n: int, m: int) -> Sequence[Sequence[float]]:
-    """Returns the current coefficients eta of (21), [size: n x m]."""
-    outputs = present_values(slave, (f"eta[{i},{j}]" for i in range(n) for j in range(m)))
-    return np.array([*outputs.values()]).reshape(n, m).tolist()
 
 
 def gap(slave: Slave, t_0: float, every: Mapping[str, Value]) -> float:

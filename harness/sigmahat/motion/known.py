@@ -2,14 +2,13 @@
 
 import numpy as np
 
-from sigmahat.fmi.instance import installed
 from sigmahat.identification.noise import low_pass
 from sigmahat.identification.regression import signals_of
 from sigmahat.joint.curve import stiffness_in_the_middle
 from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.estimate import Estimate, estimate
 from sigmahat.logs.log import Log, LogError
-from sigmahat.logs.replay import parameters
+from sigmahat.logs.replay import all_parameters
 from sigmahat.logs.sampling import sample
 from sigmahat.motion.design import NOISE, Sensors
 from sigmahat.motion.joints import Joint, Limits, Ranges
@@ -25,8 +24,7 @@ def sensors(configuration: Configuration | None, limits: Limits) -> Sensors:
     noise = NOISE * limits.torque
     if configuration is None:
         return Sensors(1.0, (_COUNTS, _COUNTS), 0.02, noise, _PERIOD)
-    fmu = installed("StiffnessEstimator")
-    every = fmu.parameters(parameters(fmu, configuration))
+    every = all_parameters(configuration)
     names = ("motor.gamma", "encoder.theta", "encoder.q", "prior.torque_gain", "samplePeriod")
     gamma, theta, q, gain, T = (float(every[name]) for name in names)
     if "noise.tau" in configuration.parameters:
