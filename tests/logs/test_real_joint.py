@@ -17,7 +17,7 @@ from sigmahat.fmi.instance import Value
 from sigmahat.logs.configuration import Configuration, Port, Time
 from sigmahat.logs.readers.formats import open_log
 
-Logs = list[Log]
+Joint = tuple[list[Log], Estimator, Estimator]
 
 
 @pytest.fixture(scope="module")
@@ -26,23 +26,15 @@ def data() -> Path:
 
 
 @pytest.fixture(scope="module")
-def measured(data: Path) -> Logs:
-    return real_joint.logs(data)
+def joint(data: Path) -> Joint:
+    """The logs, and the estimators after them with a general and with an odd polynomial."""
+    measured = real_joint.logs(data)
+    general, odd = (real_joint.replay(measured, symmetric) for symmetric in (False, True))
+    return measured, general, odd
 
 
-@pytest.fixture(scope="module")
-def general(measured: Logs) -> Estimator:
-    return real_joint.replay(measured, symmetric=False)
-
-
-@pytest.fixture(scope="module")
-def odd(measured: Logs) -> Estimator:
-    return real_joint.replay(measured, symmetric=True)
-
-
-def test_the_general_basis_fits_the_torque_the_odd_one_does_not(
-    measured: Logs, general: Estimator, odd: Estimator
-) -> None:
+def test_the_general_basis_fits_the_torque_the_odd_one_does_not(joint: Joint) -> None:
+    measured, general, odd = joint
     assert [log.setting for log in measured] == list(SETTINGS)
     assert max(log.rms(general) for log in measured) <= 4.5
     for log in measured:
@@ -50,7 +42,8 @@ def test_the_general_basis_fits_the_torque_the_odd_one_does_not(
         assert log.rms(general) < 0.5 * log.rms(odd)
 
 
-def test_the_recursion_ends_at_the_batch_fit(measured: Logs, general: Estimator) -> None:
+def test_the_recursion_ends_at_the_batch_fit(joint: Joint) -> None:
+    measured, general, _ = joint
     # THEN scaled linear least squares over all samples give the same curve as the recursion.
     unit_phi, unit_l = 0.2, 45.0
     settings = [(log.setting / unit_l) ** np.arange(M) for log in measured]
@@ -63,26 +56,24 @@ def test_the_recursion_ends_at_the_batch_fit(measured: Logs, general: Estimator)
         assert np.max(np.abs(difference)) < 1e-4 * np.ptp(log.torque)
 
 
-def test_a_setting_left_out_is_predicted(
-    measured: Logs, general: Estimator, odd: Estimator
-) -> None:
-    left_out = real_joint.leave_one_out(measured)
-    print(real_joint.torque_table(measured, general, odd, left_out))
+def test_a_setting_left_out_is_predicted(joint: Joint) -> None:
+    left_out = real_joint.leave_one_out(joint[0])
+    print(real_joint.torque_table(*joint, left_out))
     assert list(left_out) == [10, 25, 33, 35]
     assert max(left_out.values()) <= 4.5
 
 
-def test_stiffness_is_the_slope_of_the_measured_curve(
-    measured: Logs, general: Estimator, odd: Estimator
-) -> None:
+def test_stiffness_is_the_slope_of_the_measured_curve(joint: Joint) -> None:
+    measured, general, odd = joint
     # The tested windows of +-0.05 to +-0.06 rad were chosen after a look at the data.
-    print(real_joint.stiffness_table(measured, general, odd))
+    print(real_joint.stiffness_table(*joint))
     for half_width in (0.05, 0.055, 0.06):
         assert real_joint.worst(measured, general, half_width) <= 10.0
     assert real_joint.worst(measured, odd, real_joint.HALF_WIDTH) > 50.0
 
 
-def test_filtered_regression_is_no_worse(measured: Logs, general: Estimator) -> None:
+def test_filtered_regression_is_no_worse(joint: Joint) -> None:
+    measured, general, _ = joint
     regression = real_joint.replay(measured, False, real_joint.SPRING_ALONE)
     for log in measured:
         assert log.rms(regression) <= 1.001 * log.rms(general)
@@ -92,9 +83,10 @@ def test_filtered_regression_is_no_worse(measured: Logs, general: Estimator) -> 
     assert worst <= 1.002 * of_general
 
 
-def test_filtered_regression_claims_what_it_knows(measured: Logs, general: Estimator) -> None:
+def test_filtered_regression_claims_what_it_knows(joint: Joint) -> None:
     """The joint has a hysteresis of several N.m. With columns for model errors, the torque is
     hardly less accurate, and the interval contains the slope of the mean curve."""
+    measured, general, _ = joint
     fit = real_joint.replay(measured, False, real_joint.FILTERED_REGRESSION)
     found = [log.rms(fit) for log in measured]
     of_general = [log.rms(general) for log in measured]
