@@ -5,6 +5,7 @@ import json
 import re
 import shutil
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -87,11 +88,7 @@ def test_what_it_rests_on(original: Path) -> None:
 def test_the_stiffness_is_that_of_the_table(original: Path) -> None:
     sheet, table = sheet_of(original), read_estimate(original / "knee")
     end = {name: table[name].to_numpy()[-1] for name in table.column_names if "[" in name}
-    at = sheet["at_the_end"]
-
-    def near(value: Any) -> Any:
-        return pytest.approx(value, rel=STORED, abs=0.0)
-
+    at, near = sheet["at_the_end"], partial(pytest.approx, rel=STORED, abs=0.0)
     assert at["sigma"] == near(end["estimate.sigma [N.m/rad]"])
     assert at["phi"] == near(end["estimate.phi [rad]"])
     assert at["set_point"] == near(end["estimate.setPoint [1]"])

@@ -68,25 +68,19 @@ def test_the_other_formats_have_the_nearest_line(results: Path, sheet: Sheet) ->
         assert reference == pytest.approx(-offset / slope, rel=1e-6)
 
 
-def test_a_parser_of_urdf_reads_the_motor(results: Path, sheet: Sheet) -> None:
+def test_a_parser_of_urdf_reads_the_motor(sheet: Sheet, shell: Shell) -> None:
+    """GIVEN a gear ratio below 0, THEN inertia and friction are those above 0."""
     parameters = sheet["parameters"]
-    robot = URDF.from_xml_file(str(results / FILES["urdf"]))
-    gamma = parameters["gamma"]["value"]
-    motor = robot.joint_map["joint_motor"].dynamics
-    assert motor.damping == pytest.approx(gamma**2 * parameters["D_theta"]["value"])
-    coulomb = max(gamma * parameters["tau_coulomb"]["value"], 0)
-    assert motor.friction == pytest.approx(coulomb)
-    rotor = robot.link_map["joint_rotor"].inertial.inertia
-    assert rotor.izz == pytest.approx(gamma**2 * parameters["B"]["value"])
-
-
-def test_friction_has_no_direction(sheet: Sheet, shell: Shell) -> None:
-    sheet["parameters"]["gamma"] |= {"value": -7.0, "interval": None}
-    sheet["parameters"]["tau_coulomb"] |= {"value": 0.5, "interval": None}
+    parameters["gamma"] |= {"value": -7.0, "interval": None}
+    parameters["tau_coulomb"] |= {"value": 0.5, "interval": None}
     Path("joint.json").write_text(json.dumps(sheet))
     shell.run("export . --to urdf")
     robot = URDF.from_xml_file(FILES["urdf"])
-    assert robot.joint_map["joint_motor"].dynamics.friction == pytest.approx(3.5)
+    motor = robot.joint_map["joint_motor"].dynamics
+    assert motor.damping == pytest.approx(49 * parameters["D_theta"]["value"])
+    assert motor.friction == pytest.approx(3.5)
+    rotor = robot.link_map["joint_rotor"].inertial.inertia
+    assert rotor.izz == pytest.approx(49 * parameters["B"]["value"])
 
 
 def test_ranges_contain_the_values(results: Path, sheet: Sheet) -> None:

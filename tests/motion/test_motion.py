@@ -73,10 +73,9 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
         patch.setattr(Ranges, "corners", most_friction)
         spread = "sigmahat.runs.engine.spread"
         patch.setattr(spread, lambda jobs, _: ((i, job()) for i, job in enumerate(jobs)))
-        patch.setattr("sigmahat.motion.design._OF_RESONANCE", (0.3, 0.5))
-        patch.setattr("sigmahat.motion.design._EXPONENTS", (1.0,))
-        patch.setattr("sigmahat.motion.design._COMPARED", 1)
-        patch.setattr("sigmahat.motion.design._PROMISED", 1)
+        fewer = {"_OF_RESONANCE": (0.3, 0.5), "_EXPONENTS": (1.0,), "_COMPARED": 1, "_PROMISED": 1}
+        for name, value in fewer.items():
+            patch.setattr(f"sigmahat.motion.design.{name}", value)
         assert main(["motion", *OPTIONS.split(), *more]) == 0
     return folder
 

@@ -78,7 +78,7 @@ def _element(
     }
 
 
-def _parameters(fmu: Fmu, start: Mapping[str, Value]) -> list[dict[str, Any]]:
+def _parameters(fmu: Fmu, start: Mapping[str, Value]) -> list[tuple[Any, str]]:
     """All parameters except enumerations, and initial estimates, which are zero.
 
     Importers disagree on the form of an enumeration: the standard requires the name of the item,
@@ -90,6 +90,5 @@ def _parameters(fmu: Fmu, start: Mapping[str, Value]) -> list[dict[str, Any]]:
         variable = fmu.variable(name)
         if variable.type != "Enumeration" and not name.startswith("rls.eta_0"):
             text = str(bool(value)).lower() if variable.type == "Boolean" else repr(value)
-            about = {"name": name, "type": variable.type, "value": text, "unit": variable.unit}
-            listed.append(about)
+            listed.append((variable, text))
     return listed

@@ -72,14 +72,10 @@ def _ssv(sheet: Sheet, fmu: Fmu, starts: list[_Start], name: str) -> str:
             f"file name {name!r}: expected characters that XML allows, because the file contains "
             "its name; choose another name with --out"
         )
-    parameters = []
-    for s in listed:
-        about = {"type": s.variable.type, "unit": s.variable.unit}
-        parameters.append({"name": s.name, "value": s.item or s.text, **about})
     return _TEMPLATES.get_template("parameters.ssv").render(
         element=name,
         comments=_head(sheet),
-        parameters=parameters,
+        parameters=[(s.variable, s.item or s.text) for s in listed],
         units=[unit for unit in fmu.description.unitDefinitions if unit.name in units],
     )
 

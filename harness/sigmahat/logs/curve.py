@@ -281,16 +281,10 @@ def _grid(reach: Reach, polynomial: Polynomial) -> Array:
     further = _BEYOND * (high - low)
     odd = 0 not in polynomial.powers_of_phi
     known = 0.0 if odd else float(np.clip(0.0, low, high))
-    return np.unique(
-        np.concatenate(
-            [
-                np.linspace(low, high, _WITHIN),
-                np.linspace(min(low - further, known), low, _BEYOND_POINTS),
-                np.linspace(high, max(high + further, known), _BEYOND_POINTS),
-                [known, *characteristic(reach.phi)],
-            ]
-        )
-    )
+    inside = np.linspace(low, high, _WITHIN)
+    below = np.linspace(min(low - further, known), low, _BEYOND_POINTS)
+    above = np.linspace(high, max(high + further, known), _BEYOND_POINTS)
+    return np.unique([*inside, *below, *above, known, *characteristic(reach.phi)])
 
 
 def _evaluated(
