@@ -57,11 +57,9 @@ def test_the_other_formats_have_the_nearest_line(results: Path, sheet: Sheet) ->
     low, high = sheet["polynomial"]["phi"]
     phi = np.linspace(low, high, 201)
     slope, offset = np.polyfit(phi, torque(sheet, phi), 1)
-    for kind, places in {
-        "sdf": (".//spring_stiffness", ".//spring_reference"),
-        "drake": (".//spring_stiffness", ".//spring_reference"),
-        "urdf": (".//springStiffness", ".//springReference"),
-    }.items():
+    of_sdf = (".//spring_stiffness", ".//spring_reference")
+    of_urdf = (".//springStiffness", ".//springReference")
+    for kind, places in (("sdf", of_sdf), ("drake", of_sdf), ("urdf", of_urdf)):
         tree: Any = etree.parse(results / FILES[kind])
         stiffness, reference = (float(tree.find(place).text) for place in places)
         assert stiffness == pytest.approx(slope, rel=1e-9)

@@ -109,9 +109,8 @@ def step(seen: View, name: str, port: Port, of_encoder: float) -> Iterator[Findi
     if 1 / _FINER < angle / expected < _FINER:
         return
     proposed: Proposal = float(round(2 * math.pi / angle))
-    others: list[tuple[str, Proposal | None]] = []
-    if port.unit == "counts":
-        others.append((f"ports.{name}.counts_per_turn", None))
+    per_turn = (f"ports.{name}.counts_per_turn", None)
+    others: list[tuple[str, Proposal | None]] = [per_turn] if port.unit == "counts" else []
     key = f"encoder.{name}"
     unit = "deg" if angle > expected else "rad"
     if abs(abs(math.log(angle / expected)) / math.log(180 / math.pi) - 1) < _SAME:

@@ -107,15 +107,10 @@ def gear_error(seen: View, form: Form) -> Corrected | None:
     whole = 1.0
     form = replace(form, n=_ORDERS).with_all_powers()
     for _ in range(_STEPS):
-        scaled = [
-            replace(
-                each,
-                theta=whole * each.theta,
-                phi=each.phi + (1 - whole) * each.theta,
-                extra=whole * each.theta[:, None],
-            )
-            for each in seen.pieces
-        ]
+        scaled = []
+        for each in seen.pieces:
+            theta, phi = whole * each.theta, each.phi + (1 - whole) * each.theta
+            scaled.append(replace(each, theta=theta, phi=phi, extra=theta[:, None]))
         system = _equations(replace(seen, pieces=scaled), form)
         found = fit(system)
         spring = found.value.get("eta[1,0]", 0.0) / system.units[0]  # coefficient of phi

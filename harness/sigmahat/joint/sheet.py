@@ -6,14 +6,12 @@ Numbers are written with all digits, so that a reader gets exactly the estimates
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, replace
-from pathlib import Path
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic.dataclasses import dataclass
 
-from sigmahat.files.output import write_json
 from sigmahat.fmi.instance import Slave, Value
 from sigmahat.fmi.sample_loop import present_values
 from sigmahat.joint.stored import NO_OTHER_KEYS, FmuId, Format, LearnedLog, Range, Text
@@ -137,11 +135,6 @@ class Sheet:
 FORMAT = Format("joint.json", "sigmahat joint data sheet", 1, Sheet)  # format of the file
 
 
-def write(sheet: Sheet, path: Path) -> None:
-    """Writes a data sheet as JSON. A number that is not finite becomes null."""
-    write_json(asdict(sheet), path)
-
-
 def origin(sheet: Sheet) -> Iterator[str]:
     """Yields lines about the origin of the values, for comments in other files."""
     for log in sheet.logs:
@@ -215,9 +208,7 @@ def with_knees(
 def start_of(curve: Polynomial) -> dict[str, Value]:
     """Returns the start values with which an FMU has the given curve."""
     start: dict[str, Value] = {
-        f"rls.eta_0[{i},{j}]": value
-        for i, row in enumerate(curve.eta)
-        for j, value in enumerate(row)
+        f"rls.eta_0[{i},{j}]": float(x) for (i, j), x in np.ndenumerate(curve.eta)
     }
     return {**start, "rls.n": len(curve.eta), "rls.m": len(curve.eta[0])}
 

@@ -152,7 +152,7 @@ def estimate(
             replay.run(lambda outputs: [add(outputs) for add in adds], progress, digest)
         write_learned(slave, replay.every, replay.logs, folder / LEARNED.file)
         answered = replay.answer()
-        sheet.write(data_sheet(replay, answered.curve), folder / sheet.FORMAT.file)
+        write_json(asdict(data_sheet(replay, answered.curve)), folder / sheet.FORMAT.file)
         result = _result(replay, answered.curve)
         write_curve(answered.curve, folder / CURVE)
         write_points(answered.points, folder / POINTS)

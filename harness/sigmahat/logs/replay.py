@@ -5,7 +5,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from fmpy import fmi2
 from numpy.typing import NDArray
 
 from sigmahat.fmi.instance import Fmu, Slave, Value, installed
@@ -110,10 +109,10 @@ def gap(slave: Slave, t_0: float, every: Mapping[str, Value]) -> float:
     ticks = 1
     if every["method"] == "Paper2011":
         ticks = math.ceil(min(2 / (float(every["residual.K_I"]) * T), _LONGEST_GAP))
-    inputs, count = slave.fmu.references(PORTS, "input"), len(PORTS)
-    fmi = slave.functions
+    inputs, loop = slave.fmu.references(PORTS, "input"), SampleLoop()
+    loop.set_real(slave, inputs, np.full(len(PORTS), np.nan))
+    loop.step(slave, step_times(np.full(1, t_0), ticks * T))
+    loop.set_real(slave, inputs, np.zeros(len(PORTS)))
     with slave.only_errors():
-        slave.call(fmi.fmi2SetReal, inputs, count, (fmi2.fmi2Real * count)(*[math.nan] * count))
-        slave.call(fmi.fmi2DoStep, t_0, ticks * T, fmi2.fmi2True)
-        slave.call(fmi.fmi2SetReal, inputs, count, (fmi2.fmi2Real * count)())
+        loop.run(0, 1)
     return t_0 + ticks * T
