@@ -37,17 +37,14 @@ class Multisine:
         A, angle = np.array(self.amplitudes)[:, None], w * t + np.array(self.phases)[:, None]
         x, v = np.sum(A * np.sin(angle), axis=0), np.sum(A * w * np.cos(angle), axis=0)
         a = -np.sum(A * w**2 * np.sin(angle), axis=0)
-        e, de, dde = self._envelope(t)
-        return e * x, de * x + e * v, dde * x + 2 * de * v + e * a
-
-    def _envelope(self, t: Array) -> tuple[Array, Array, Array]:
-        """The envelope e with its derivatives; the ramps do not overlap."""
+        # The envelope e with its derivatives; the ramps do not overlap.
         rising = t < self.duration / 2
         s = np.clip(np.where(rising, t, self.duration - t) / self.ramp, 0.0, 1.0)
         slope = np.where(rising, 1.0, -1.0) / self.ramp
         u = s * (1 - s)
         e = s**4 * (35 - 84 * s + 70 * s**2 - 20 * s**3)
-        return e, 140 * u**3 * slope, 420 * u**2 * (1 - 2 * s) * slope**2
+        de, dde = 140 * u**3 * slope, 420 * u**2 * (1 - 2 * s) * slope**2
+        return e * x, de * x + e * v, dde * x + 2 * de * v + e * a
 
     def scaled(self, factor: float) -> Multisine:
         """The motion with amplitudes multiplied by a factor."""
