@@ -115,6 +115,8 @@ sh_instance *sh_create(const sh_importer *importer, const char *name, const char
 {
     sh_instance before = nobody(importer);
     sh_instance *instance;
+    void *model;
+    char *own_name;
 
     if (!sh_has(&before, name, function, "instanceName")) {
         return NULL;
@@ -129,17 +131,18 @@ sh_instance *sh_create(const sh_importer *importer, const char *name, const char
     }
 
     instance = sh_allocate(importer, sizeof *instance);
-    if (instance != NULL) {
-        instance->importer = *importer;
-        instance->model = sh_allocate(importer, sh_fmu_model.size);
-        instance->name = sh_allocate(importer, strlen(name) + 1);
-    }
-    if (instance == NULL || instance->model == NULL || instance->name == NULL) {
-        sh_destroy(instance);
+    model = sh_allocate(importer, sh_fmu_model.size);
+    own_name = sh_allocate(importer, strlen(name) + 1);
+    if (instance == NULL || model == NULL || own_name == NULL) {
+        sh_release(importer, instance);
+        sh_release(importer, model);
+        sh_release(importer, own_name);
         sh_report(&before, SH_ERROR, "%s: out of memory.", function);
         return NULL;
     }
-    (void)strcpy(instance->name, name);
+    instance->importer = *importer;
+    instance->model = model;
+    instance->name = strcpy(own_name, name);
     instance->categories = categories;
     set_start_values(instance);
     return instance;
