@@ -2,7 +2,7 @@
 
 #include "real_math.h"
 
-/* Far below any velocity [rad/s] and lag [rad]. Processors compute slowly with the far smaller numbers of a decay. */
+/* Far below any velocity [rad/s] and lag [rad]. Processors compute slowly with denormal numbers. */
 static const sh_real AT_REST = (sh_real)1e-30;
 
 /* Returns the measurement variance R at a velocity, (11) [rad2]; V_min for an encoder without quantisation. */

@@ -336,7 +336,7 @@ class Oracle:
         return 0.2 if count < 15 else 0.0101 * 0.05 * count
 
     def end_build(self) -> None:
-        """Removes the noise of a new posterior. Later rows are added before the first use."""
+        """Removes the noise of a new posterior, which takes more rows before its first use."""
         self.build.solve(self.data)
         if self.p["prior.B"] > 0:
             self.build.remove(0.0)

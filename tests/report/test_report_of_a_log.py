@@ -21,7 +21,7 @@ SPIKE = 5.0
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Folder with a log of 60 s that has a gap, a row without a number and a wrong row."""
+    """Folder with a log of 60 s that has a gap, a missing value and a row with a wrong value."""
     folder = tmp_path_factory.mktemp("log")
     log = awas_log(1.0, 0.3, 60.0)
     log["q"][GAP.stop] += SPIKE

@@ -1,4 +1,4 @@
-"""Writes the bill of materials of a release in CycloneDX: contents of the files, and build tools.
+"""Writes the bill of materials of a release in CycloneDX: components of each file, and build tools.
 
 The bill depends only on the files of the release, so that the same release gives the same bytes.
 The bill has no time, and the serial number is computed from the files.

@@ -25,10 +25,10 @@ _ROTOR = 1e-6  # least inertia of a link, used for a rotor with a separate inert
 _EXACT = 1e-3  # least error of a polynomial that is reported, relative to the largest torque
 _MISSING = {
     "mjcf": "",
-    "sdf": "SDF has no rotor inertia: the link rotor has this inertia, at the gear output.",
-    "urdf": "URDF has no spring: the element gazebo contains it, and only Gazebo reads it. URDF "
-    "has no rotor inertia: the link rotor has this inertia, at the gear output.",
-    "drake": "Drake has no Coulomb friction in a joint: it does not use the element friction.",
+    "sdf": "SDF has no rotor inertia: the link `rotor` has this inertia, at the gear output.",
+    "urdf": "URDF has no spring: the element `gazebo` contains it, and only Gazebo reads it. "
+    "URDF has no rotor inertia: the link `rotor` has this inertia, at the gear output.",
+    "drake": "Drake has no Coulomb friction in a joint: Drake ignores the element `friction`.",
 }
 
 

@@ -5,7 +5,7 @@ the processing of the samples.
 
 A sample within a thousandth of the period from a tick is used unchanged. A slower, faster or uneven
 column has samples between the ticks. A tick between two samples is interpolated linearly, if the
-samples are not further apart than the longest gap. The longest gap is configured, or three times
+samples are not further apart than the longest gap. By default, the longest gap is three times
 the median interval of the column. The values at all other ticks are nan, and the estimator skips
 these ticks. A column with a sample for nearly every tick is interpolated only if the longest gap is
 configured.

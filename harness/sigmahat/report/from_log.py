@@ -82,7 +82,7 @@ def from_joints(folder: Path) -> Contents:
     """
     table = read_csv(folder / JOINTS)
     if table.column_names[:1] != ["joint"]:
-        raise ValueError(f"{folder / JOINTS}: no table of `sigmahat estimate`; run it again")
+        raise ValueError(f"{folder / JOINTS}: expected a table of `estimate`; run `estimate` again")
     names = list(dict.fromkeys(map(str, table["joint"].to_pylist())))
     panels, lines = [], list[str]()
     for name in names:

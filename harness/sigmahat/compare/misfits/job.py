@@ -128,7 +128,7 @@ def compare(
     processes: int | None = None,
     progress: Progress = lambda done: None,
 ) -> list[Row]:
-    """Runs each condition, an element of CONDITIONS, on the joints that can have its misfit.
+    """Runs each condition of CONDITIONS on the joints where the misfit of the condition can occur.
 
     processes, progress   as for sigmahat.runs.engine.run_all(); one run is one job
 
@@ -149,7 +149,7 @@ def compare(
 def pairs(
     conditions: Sequence[Condition], joints: Sequence[Joint]
 ) -> list[tuple[Condition, Joint]]:
-    """Returns the rows of a table: each condition with the joints that can have its misfit."""
+    """Returns the rows of a table: each condition with the joints where its misfit can occur."""
     return [(each, joint) for each in conditions for joint in joints if joint in each.joints]
 
 
