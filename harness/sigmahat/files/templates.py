@@ -7,5 +7,7 @@ import jinja2
 
 def environment(*folders: Path, autoescape: bool = True) -> jinja2.Environment:
     """Creates a Jinja2 environment for template folders; an undefined name is an error."""
-    loader, strict = jinja2.FileSystemLoader(folders), jinja2.StrictUndefined
-    return jinja2.Environment(loader=loader, undefined=strict, autoescape=autoescape)
+    loader = jinja2.FileSystemLoader(folders)
+    return jinja2.Environment(
+        loader=loader, undefined=jinja2.StrictUndefined, autoescape=autoescape
+    )

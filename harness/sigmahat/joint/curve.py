@@ -93,7 +93,8 @@ def nearest(settings: Sequence[float], set_points: Array) -> NDArray[np.intp]:
 
 CURVE = "estimate.curve.csv"  # name of the file in the folder of results
 _UNITS = {
-    **{"setPoint": "1", "phi": "rad"},
+    "setPoint": "1",
+    "phi": "rad",
     **dict.fromkeys(("tau_e", "tau_e_std", "tau_e low", "tau_e high"), "N.m"),
     **dict.fromkeys(("sigma", "sigma_std", "sigma low", "sigma high"), "N.m/rad"),
     "in the data": None,

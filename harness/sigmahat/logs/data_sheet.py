@@ -18,8 +18,12 @@ from sigmahat.logs.configuration import Configuration
 from sigmahat.logs.job import Replay
 
 UNITS = {
-    **{"bias": "N.m", "damping": "N.m.s/rad", "load_friction": ""},
-    **{"eccentric": "rad", "delay": "s", "hysteresis": "N.m"},
+    "bias": "N.m",
+    "damping": "N.m.s/rad",
+    "load_friction": "",
+    "eccentric": "rad",
+    "delay": "s",
+    "hysteresis": "N.m",
 }
 """Units of the estimates of FilteredRegression besides the motor data, such as output bias_hat."""
 MOTOR = {"B": "kg.m2", "D_theta": "N.m.s/rad"}
