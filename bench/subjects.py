@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 import sigmahat
+from sigmahat.experiments.scenario import Sine, T
 from sigmahat.fmi.instance import Fmu, Slave, installed
 from sigmahat.fmi.master import simulate
 from sigmahat.fmi.sample_loop import SampleLoop, step_times
 from sigmahat.paper.scenarios import SCENARIOS
-from sigmahat.runs.scenario import Sine, T
 
 Array = NDArray[np.float64]
 

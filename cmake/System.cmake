@@ -4,8 +4,8 @@
 # Table I. All three arguments are full paths.
 function(sigmahat_add_system ssp plant estimator)
   set(templates ${PROJECT_SOURCE_DIR}/modelDescription/system)
-  file(GLOB sources CONFIGURE_DEPENDS ${templates}/* ${PROJECT_SOURCE_DIR}/harness/sigmahat/joint/templates/*.ssv ${PROJECT_SOURCE_DIR}/harness/sigmahat/fmi/*.py ${PROJECT_SOURCE_DIR}/harness/sigmahat/paper/*.py
-       ${PROJECT_SOURCE_DIR}/harness/sigmahat/runs/*.py
+  file(GLOB sources CONFIGURE_DEPENDS ${templates}/* ${PROJECT_SOURCE_DIR}/harness/sigmahat/result/templates/*.ssv ${PROJECT_SOURCE_DIR}/harness/sigmahat/fmi/*.py ${PROJECT_SOURCE_DIR}/harness/sigmahat/paper/*.py
+       ${PROJECT_SOURCE_DIR}/harness/sigmahat/experiments/*.py
        ${PROJECT_SOURCE_DIR}/harness/sigmahat/export/*.py)
   cmake_path(GET ssp FILENAME name)
   add_custom_command(

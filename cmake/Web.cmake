@@ -4,8 +4,8 @@ set(live ${PROJECT_BINARY_DIR}/live)
 set(live_fmus ${SIGMAHAT_FMU_FOLDER}/AwasPlant.fmu ${SIGMAHAT_FMU_FOLDER}/StiffnessEstimator.fmu)
 file(GLOB live_page CONFIGURE_DEPENDS docs/live/*)
 file(GLOB live_sources CONFIGURE_DEPENDS harness/sigmahat/export/web.py harness/sigmahat/export/system.py
-     harness/sigmahat/paper/*.py harness/sigmahat/runs/scenario.py
-     harness/sigmahat/guessing/vocabulary.toml)
+     harness/sigmahat/paper/*.py harness/sigmahat/experiments/scenario.py
+     harness/sigmahat/guess/vocabulary.toml)
 add_custom_command(
   OUTPUT ${live}/fmus.js
   COMMAND ${SIGMAHAT_RUN} sigmahat.export live ${live} ${live_fmus}

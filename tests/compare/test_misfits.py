@@ -19,7 +19,7 @@ from sigmahat.compare.misfits.conditions import CONDITIONS, Group
 from sigmahat.compare.misfits.experiment import AWAS, JOINTS, SEA_1K, Experiment, Joint, draw
 from sigmahat.compare.misfits.job import Row, Score, compare, pairs, score, settings
 from sigmahat.compare.misfits.table import FIGURES, IN_FILE, table
-from sigmahat.runs.scenario import Sine, Sines
+from sigmahat.experiments.scenario import Sine, Sines
 
 EXACT: Mapping[str, float] = {**QUIET, "encoder.theta": 0.0, "encoder.q": 0.0}
 

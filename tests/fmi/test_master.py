@@ -19,10 +19,10 @@ import sigmahat
 from controllers import run
 from plant_runs import QUIET
 from recordings import one_seed
+from sigmahat.experiments.scenario import T
 from sigmahat.fmi.instance import Fmu, FmuError, Slave, opened
 from sigmahat.fmi.master import simulate
 from sigmahat.paper.scenarios import scenario
-from sigmahat.runs.scenario import T
 
 PLANT = scenario("table1").plant
 RESIDUAL = scenario("table1").estimators["RESIDUAL"]

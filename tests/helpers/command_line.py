@@ -61,7 +61,7 @@ def working_in(folder: Path) -> Iterator[None]:
     """Commands run in a folder, and draw no figures, because figures take most of the time."""
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)
-        patch.setattr("sigmahat.logs.estimate._save_figure", lambda *_: None)
+        patch.setattr("sigmahat.result.estimate._save_figure", lambda *_: None)
         yield
 
 

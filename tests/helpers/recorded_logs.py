@@ -17,9 +17,9 @@ from command_line import working_in
 from plant_runs import run_awas, sinusoids, times
 from regression_joint import Joint
 from sigmahat.cli import main
-from sigmahat.identification.quantities import Identified
-from sigmahat.identification.write import update
-from sigmahat.logs.configuration import Configuration, checked_configuration, read_document
+from sigmahat.motor.quantities import Identified
+from sigmahat.motor.write import update
+from sigmahat.recording.configuration import Configuration, checked_configuration, read_document
 
 Array = NDArray[np.float64]
 Columns = dict[str, Array]

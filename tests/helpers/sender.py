@@ -15,9 +15,9 @@ from typing import Any
 
 import numpy as np
 
-from sigmahat.logs.configuration import read_configuration
-from sigmahat.logs.estimate import estimate
-from sigmahat.logs.readers.formats import open_log
+from sigmahat.recording.configuration import read_configuration
+from sigmahat.recording.readers.formats import open_log
+from sigmahat.result.estimate import estimate
 
 T = 0.002
 COUNTS, GEAR = 4096, 20

@@ -16,7 +16,7 @@ import pytest
 from command_line import Shell
 from sender import CONFIGURATION, Viewer, csv, ended, estimated, free_port, messages, running
 from sigmahat.live.session import Session
-from sigmahat.logs.readers.formats import open_log
+from sigmahat.recording.readers.formats import open_log
 
 needs_signals = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT")
 

@@ -17,9 +17,9 @@ from sender import CONFIGURATION, COUNTS, T, estimated, messages, of_joints
 from sigmahat.live.joint import OUTPUTS, Estimated
 from sigmahat.live.messages import Columns
 from sigmahat.live.session import Session
-from sigmahat.logs.configuration import read_configuration
-from sigmahat.logs.estimate import estimate
-from sigmahat.logs.readers.formats import open_log
+from sigmahat.recording.configuration import read_configuration
+from sigmahat.recording.readers.formats import open_log
+from sigmahat.result.estimate import estimate
 
 SECOND = 1_000_000_000
 

@@ -13,8 +13,8 @@ from selenium.webdriver.common.keys import Keys
 
 import sigmahat
 from live_page import LivePage, live_page
+from sigmahat.experiments.engine import run
 from sigmahat.paper.scenarios import scenario
-from sigmahat.runs.engine import run
 
 _DRAWN = """
 const canvas = document.getElementById(arguments[0]), color = getComputedStyle(

@@ -21,9 +21,9 @@ from c_sources import REPOSITORY
 from fmi_instance import unpacked
 from fmi_runs import OTHER_THAN_0, PLANTS
 from modelica_package import FILES, NO_NOISE, PACKAGE, compiled, modification
+from sigmahat.experiments.scenario import Sine, T
 from sigmahat.fmi.master import Plant, simulate
 from sigmahat.fmi.series import Series
-from sigmahat.runs.scenario import Sine, T
 
 SPECIAL = {
     "sigma": "estimator.reals[3] + t",  # the gear ratio identifies the motor

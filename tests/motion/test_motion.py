@@ -14,12 +14,12 @@ from scipy.integrate import solve_ivp
 from controllers import run
 from recorded_logs import configured, in_memory
 from sigmahat.cli import main
-from sigmahat.identification.identify import identify
-from sigmahat.identification.write import update
-from sigmahat.logs.log import LogError
 from sigmahat.motion import known
 from sigmahat.motion.design import Sensors, _log, design, relative_half_width
-from sigmahat.motion.joints import Joint, Limits, Multisine, Ranges, of_limits
+from sigmahat.motion.joints_of_log import Joint, Limits, Multisine, Ranges, of_limits
+from sigmahat.motor.identify import identify
+from sigmahat.motor.write import update
+from sigmahat.recording.log import LogError
 
 LIMITS = Limits(angle=0.8, velocity=1.5, torque=60.0, deformation=0.03)
 OPTIONS = "--angle 0.8 --velocity 1.5 --torque 60 --deformation 0.03"
@@ -71,7 +71,7 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
     with pytest.MonkeyPatch.context() as patch:  # few motions and joints
         patch.setattr(Ranges, "corners", most_friction)
-        spread = "sigmahat.runs.engine.spread"
+        spread = "sigmahat.experiments.engine.spread"
         patch.setattr(spread, lambda jobs, _: ((i, job()) for i, job in enumerate(jobs)))
         fewer = {"_OF_RESONANCE": (0.3, 0.5), "_EXPONENTS": (1.0,), "_COMPARED": 1, "_PROMISED": 1}
         for name, value in fewer.items():

@@ -10,7 +10,7 @@ from dense_regression import START
 from dense_signals import GROUPS, Filtered, Inputs
 from plant_runs import run_awas, times
 from recorded_logs import COLUMNS, RETRACTED, T
-from sigmahat.runs.metrics import msrep
+from sigmahat.experiments.metrics import msrep
 
 MEASURED = tuple(COLUMNS.values())
 SETTINGS = {"method": 2, "rls.n": 3, "motor.D_theta": 1.1e-3}  # D_theta is 10 % too high

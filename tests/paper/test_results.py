@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from recordings import one_seed
+from sigmahat.experiments.metrics import Indices
 from sigmahat.paper.figures.catalogue import FIGURES
 from sigmahat.paper.reproduction import Result, as_dict, conditions, table, write_series
 from sigmahat.paper.scenarios import SCENARIOS
-from sigmahat.plotting.figure import save
-from sigmahat.runs.metrics import Indices
+from sigmahat.show.figure import save
 
 ROWS = ["MODEL", "SENSOR", "RESIDUAL", "MODEL-measured"]
 # One scenario of each kind, and the figures that are drawn for each scenario.

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from recordings import eight_seeds, one_seed
+from sigmahat.experiments.scenario import nominal_awas
 from sigmahat.paper.reproduction import Result
 from sigmahat.paper.scenarios import scenario
-from sigmahat.runs.scenario import nominal_awas
 
 
 def worst(result: Result, name: str, index: str) -> float:

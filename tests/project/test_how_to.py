@@ -17,7 +17,7 @@ from controllers import run
 from plant_runs import run_plant
 from recorded_logs import REGRESSION, awas_log, write_log
 from sigmahat.cli import cli
-from sigmahat.runs.scenario import T
+from sigmahat.experiments.scenario import T
 
 REPOSITORY = Path(__file__).parents[2]
 PAGES = REPOSITORY / "docs" / "how-to"

@@ -12,10 +12,10 @@ from libcosimpy.CosimExecution import CosimExecution
 from libcosimpy.CosimObserver import CosimObserver
 
 import sigmahat
+from sigmahat.experiments.scenario import T
 from sigmahat.fmi.instance import Fmu
 from sigmahat.fmi.master import simulate
 from sigmahat.paper.scenarios import scenario
-from sigmahat.runs.scenario import T
 
 TABLE1 = scenario("table1")
 RESIDUAL = TABLE1.estimators["RESIDUAL"]

@@ -15,7 +15,7 @@ from selenium.webdriver.common.by import By
 from browser import DATA, ROWS, Page, opened
 from command_line import Shell, working_in
 from recorded_logs import CONFIGURATION, awas_log, read_estimate, write_log
-from sigmahat.logs.panels import reduce
+from sigmahat.result.log_panels import reduce
 
 PICTURE = """
 const view = [...Object.values(Bokeh.index.roots ?? Bokeh.index)][arguments[0]];

@@ -12,8 +12,8 @@ import pytest
 from browser import DATA, ROWS, Page, opened
 from command_line import Shell, working_in
 from recorded_logs import REGRESSION, awas_log, write_log
-from sigmahat.joint.curve import CURVE
-from sigmahat.plotting.style import limits
+from sigmahat.result.curve import CURVE
+from sigmahat.show.style import limits
 
 GAP = slice(20_000, 20_200)
 SPIKE = 5.0

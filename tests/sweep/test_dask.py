@@ -13,7 +13,7 @@ import distributed
 import pytest
 
 from command_line import Shell
-from sigmahat.runs.pool import WorkerError
+from sigmahat.experiments.pool import WorkerError
 from sigmahat.sweep.plan import read_plan
 from sigmahat.sweep.preparation import execute, identity
 from sweeps import QUICK, records, start, wait_until, written

@@ -13,7 +13,7 @@ import scipy.stats
 
 from command_line import Shell
 from recordings import one_seed
-from sigmahat.runs.metrics import INDICES, Indices
+from sigmahat.experiments.metrics import INDICES, Indices
 from sigmahat.sweep import job, preparation
 from sigmahat.sweep.job import NAME, Records, all_outcomes, sweep
 from sigmahat.sweep.plan import Outcome, Plan, Run, read_plan

@@ -19,8 +19,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 if TYPE_CHECKING:
-    from sigmahat.logs.configuration import Configuration
-    from sigmahat.logs.log import Log
+    from sigmahat.recording.configuration import Configuration
+    from sigmahat.recording.log import Log
 
 FILE, PATH = click.Path(path_type=Path, dir_okay=False), click.Path(path_type=Path)
 COUNT = click.IntRange(min=1)
@@ -101,15 +101,15 @@ def for_each_joint(
     Raises LogError if the log or the configuration cannot be read, ClickException if the FMU of the
     estimator is not built, and errors of the job.
     """
-    from sigmahat.logs.configuration import joints_of, read_document
-    from sigmahat.logs.readers.formats import open_log
+    from sigmahat.recording.configuration import joints_of, read_document
+    from sigmahat.recording.readers.formats import open_log
 
     need_fmus("StiffnessEstimator")
     open_log(log)  # a missing log is reported before a missing configuration
     joints = [joint] if joint else joints_of(read_document(config), config)
     if len(joints) == 1:
         return {joints[0]: _of_joint(log, config, joints[0], job, "")}
-    from sigmahat.runs.engine import run_all
+    from sigmahat.experiments.engine import run_all
 
     jobs = [partial(_of_joint, log, config, joint, job, f"joint {joint}: ") for joint in joints]
     with progress("Joints", len(joints)) as bar:
@@ -120,9 +120,9 @@ def _of_joint(
     log: Path, config: Path, joint: str, job: Callable[[Log, Configuration], _Result], place: str
 ) -> _Result:
     """The result of a job; place begins its errors."""
-    from sigmahat.logs.configuration import read_configuration
-    from sigmahat.logs.log import LogError
-    from sigmahat.logs.readers.formats import open_log
+    from sigmahat.recording.configuration import read_configuration
+    from sigmahat.recording.log import LogError
+    from sigmahat.recording.readers.formats import open_log
 
     try:
         return job(open_log(log), read_configuration(config, joint))
@@ -207,8 +207,8 @@ def errors_in_one_line(out: Path, option: str = "--out") -> Iterator[None]:
     Raises ClickException if an FMU refuses a value, a value does not fit, workers are lost, or a
     file or folder cannot be written.
     """
+    from sigmahat.experiments.pool import WorkerError
     from sigmahat.fmi.instance import FmuError
-    from sigmahat.runs.pool import WorkerError
 
     try:
         yield

@@ -12,11 +12,11 @@ import click
 from sigmahat.commands import common
 
 if TYPE_CHECKING:
-    from sigmahat.checks.findings import Checked
-    from sigmahat.guessing.guess import JointGuess
-    from sigmahat.identification.quantities import Identified
-    from sigmahat.logs.configuration import Configuration
-    from sigmahat.logs.log import Log
+    from sigmahat.check.findings import Checked
+    from sigmahat.guess.guess import JointGuess
+    from sigmahat.motor.quantities import Identified
+    from sigmahat.recording.configuration import Configuration
+    from sigmahat.recording.log import Log
 
 
 @common.command("init knee.csv")
@@ -38,10 +38,10 @@ def init(log: Path, config: Path, joint: str | None, force: bool) -> None:
     For a log of several joints, the file has a section for each joint, and common values once.
     """
     from sigmahat.files.output import write_whole
-    from sigmahat.guessing import template
-    from sigmahat.guessing.columns import read_columns
-    from sigmahat.guessing.guess import guess, one_joint
-    from sigmahat.logs.readers.formats import open_log
+    from sigmahat.guess import template
+    from sigmahat.guess.columns import read_columns
+    from sigmahat.guess.guess import guess, one_joint
+    from sigmahat.recording.readers.formats import open_log
 
     common.need_fmus("StiffnessEstimator")
     with common.errors_in_one_line(config, "--config"):
@@ -70,7 +70,7 @@ def _text(log: Path, joints: Mapping[str, JointGuess], path: Path) -> str:
 
 
 def _guessed(joint: JointGuess) -> Iterator[str]:
-    from sigmahat.guessing.template import period_of
+    from sigmahat.guess.template import period_of
 
     if joint.name:
         yield f"joint {joint.name}"
@@ -101,9 +101,9 @@ def open_page(log: Path, config: Path, port: int) -> None:
     The page is served on this computer alone, at an address with a token, until Ctrl-C. The page
     writes the same file as `sigmahat init`.
     """
-    from sigmahat.logs.configuration import read_document
-    from sigmahat.logs.readers.formats import open_log
-    from sigmahat.page.server import serve
+    from sigmahat.recording.configuration import read_document
+    from sigmahat.recording.readers.formats import open_log
+    from sigmahat.setup_page.server import serve
 
     common.need_fmus("StiffnessEstimator")
     with common.errors_in_one_line(config, "--config"):
@@ -126,9 +126,9 @@ def check(log: Path, config: Path, joint: str) -> int:
     Errors of signs, units, gear ratios, zeros and delays are found. The command also lists what no
     log can show. Exit status: 0 if nothing contradicts the log, 1 if something does.
     """
-    from sigmahat.checks.check import check
-    from sigmahat.checks.findings import as_dict
-    from sigmahat.checks.text import summary
+    from sigmahat.check.check import check
+    from sigmahat.check.findings import as_dict
+    from sigmahat.check.text import summary
 
     with common.errors_in_one_line(config, "--config"):
         checked = common.for_each_joint(log, config, joint, check)
@@ -155,12 +155,12 @@ def identify(log: Path, config: Path, joint: str, torque_constant: bool, dry_run
     """
     import tomlkit
 
-    from sigmahat.checks.findings import as_dict as checks_as_dict
-    from sigmahat.checks.text import summary as of_checks
+    from sigmahat.check.findings import as_dict as checks_as_dict
+    from sigmahat.check.text import summary as of_checks
     from sigmahat.files.output import write_whole
-    from sigmahat.identification.quantities import as_dict, summary
-    from sigmahat.identification.write import update
-    from sigmahat.logs.configuration import read_document
+    from sigmahat.motor.quantities import as_dict, summary
+    from sigmahat.motor.write import update
+    from sigmahat.recording.configuration import read_document
 
     texts, values = {}, {}
     with common.errors_in_one_line(config, "--config"):
@@ -183,10 +183,10 @@ def _identified(
     torque_constant: bool, dry_run: bool, log: Log, before: Configuration
 ) -> tuple[Identified, Checked]:
     """The identified values of a joint, and the checks with these values; no file is written."""
-    from sigmahat.checks.check import check_identified
-    from sigmahat.identification.identify import identify
-    from sigmahat.identification.write import update
-    from sigmahat.logs.configuration import checked_configuration, read_document
+    from sigmahat.check.check import check_identified
+    from sigmahat.motor.identify import identify
+    from sigmahat.motor.write import update
+    from sigmahat.recording.configuration import checked_configuration, read_document
 
     document = read_document(before.path)
     found = identify(log, before, torque_constant)

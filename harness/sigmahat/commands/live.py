@@ -12,8 +12,8 @@ import click
 from sigmahat.commands import common
 
 if TYPE_CHECKING:
+    from sigmahat.live.loop import Inbox
     from sigmahat.live.session import Session
-    from sigmahat.live.watch import Inbox
 
 
 @common.command("live knee.toml --from udp:9870 --to udp:9871")
@@ -67,8 +67,8 @@ def live(
     """
     from sigmahat.files.output import created_folder
     from sigmahat.live.endpoints import Endpoints
+    from sigmahat.live.loop import Inbox, terminal, watch
     from sigmahat.live.session import Session
-    from sigmahat.live.watch import Inbox, terminal, watch
 
     common.need_fmus("StiffnessEstimator")
     with common.errors_in_one_line(out), created_folder(out):

@@ -12,7 +12,7 @@ from sigmahat.commands import common
 
 if TYPE_CHECKING:
     from sigmahat.motion.design import Design
-    from sigmahat.motion.joints import Limits, Ranges
+    from sigmahat.motion.joints_of_log import Limits, Ranges
 
 
 class _Number(click.FloatRange):
@@ -79,10 +79,10 @@ def motion(
     trajectory for ROS, and as C. CONFIG gives gear ratio, encoders and noise.
     """
     from sigmahat.files.output import output_folder
-    from sigmahat.logs.configuration import read_configuration
-    from sigmahat.logs.readers.formats import open_log
     from sigmahat.motion import design, files, known
-    from sigmahat.motion.joints import Limits, of_limits
+    from sigmahat.motion.joints_of_log import Limits, of_limits
+    from sigmahat.recording.configuration import read_configuration
+    from sigmahat.recording.readers.formats import open_log
 
     common.need_fmus("StiffnessEstimator")
     if after is not None and config is None:

@@ -14,11 +14,11 @@ import click
 from sigmahat.commands import common
 
 if TYPE_CHECKING:
-    from sigmahat.checks.findings import Checked
-    from sigmahat.logs.configuration import Configuration
-    from sigmahat.logs.estimate import Estimate
-    from sigmahat.logs.log import Log
-    from sigmahat.validation.validate import Validation
+    from sigmahat.check.findings import Checked
+    from sigmahat.recording.configuration import Configuration
+    from sigmahat.recording.log import Log
+    from sigmahat.result.estimate import Estimate
+    from sigmahat.result.validate import Validation
 
 
 @common.command("estimate knee.parquet --config knee.toml --out knee")
@@ -53,10 +53,10 @@ def estimate(
     `sigmahat export`, and the state of the estimator (state.json) for --start-from.
     With several joints, each joint has its own folder, and a row in joints.csv.
     """
-    from sigmahat.checks.findings import as_dict
-    from sigmahat.checks.text import summary as of_checks
+    from sigmahat.check.findings import as_dict
+    from sigmahat.check.text import summary as of_checks
     from sigmahat.files.tables import aligned
-    from sigmahat.logs.estimate import summary, write_joints
+    from sigmahat.result.estimate import summary, write_joints
 
     if to is not None:
         import_module("mcap")  # report a missing package before the work
@@ -84,10 +84,10 @@ def _estimated(
     out: Path, start_from: Path | None, to: str | None, log: Log, configuration: Configuration
 ) -> tuple[Estimate, Checked]:
     """Writes the files of a joint. Returns its estimate and the result of the checks."""
-    from sigmahat.checks.check import check
-    from sigmahat.checks.text import rows
+    from sigmahat.check.check import check
+    from sigmahat.check.text import rows
     from sigmahat.files.output import output_folder
-    from sigmahat.logs import estimate as job
+    from sigmahat.result import estimate as job
 
     # The figure needs this import, which can run meanwhile: the replay is mostly C code.
     Thread(target=_import, args=["matplotlib.figure"]).start()
@@ -129,7 +129,7 @@ def validate(log: Path, config: Path, start_from: Path | None, joint: str) -> in
     LOG is replayed with the earlier stiffness, and without it. Exit status: 0 if the logs agree, 1
     if the logs disagree or decide nothing.
     """
-    from sigmahat.validation.validate import summary
+    from sigmahat.result.validate import summary
 
     start_from = start_from or Path("sigmahat-results", config.stem)
     with common.errors_in_one_line(start_from, "--start-from"):
@@ -141,7 +141,7 @@ def validate(log: Path, config: Path, start_from: Path | None, joint: str) -> in
 
 
 def _validated(start_from: Path, log: Log, configuration: Configuration) -> Validation:
-    from sigmahat.validation.validate import validate
+    from sigmahat.result.validate import validate
 
     learned = start_from / configuration.joint if start_from.is_dir() else start_from
     return validate(log, configuration, learned)
@@ -176,9 +176,9 @@ def export(sheet: Path, to: str, out: Path | None, force: bool) -> None:
     flexibility, with the intervals of all parameters.
     """
     from sigmahat.fmi.instance import installed
-    from sigmahat.joint import parameter_file
-    from sigmahat.joint.robot_model import write_model
-    from sigmahat.joint.sheet import FORMAT
+    from sigmahat.result import parameter_file
+    from sigmahat.result.robot_model import write_model
+    from sigmahat.result.sheet import FORMAT
 
     common.need_fmus("StiffnessEstimator")
     path = out or FORMAT.path(sheet).with_suffix(_SUFFIXES[to])

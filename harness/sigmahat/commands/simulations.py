@@ -23,10 +23,10 @@ def _names(_: click.Context, __: click.Parameter, begin: str) -> list[str]:
 @common.answer_options
 def reproduce(scenario: str, seeds: int, out: Path) -> None:
     """Run a scenario; print its table, draw its figures."""
+    from sigmahat.experiments.metrics import MSREP_IN_WORDS
     from sigmahat.files.output import output_folder
     from sigmahat.paper.reproduction import as_dict, conditions, reproduce, table, write_results
     from sigmahat.paper.scenarios import scenario as named
-    from sigmahat.runs.metrics import MSREP_IN_WORDS
 
     with common.errors_in_one_line(out):
         chosen = named(scenario)
@@ -38,7 +38,7 @@ def reproduce(scenario: str, seeds: int, out: Path) -> None:
         with common.progress("Running", seeds if seeds > 1 else chosen.steps) as bar:
             result = reproduce(chosen, numbers, progress=bar.update)
         from sigmahat.paper.figures.catalogue import FIGURES
-        from sigmahat.plotting.figure import save
+        from sigmahat.show.figure import save
 
         with common.progress("Drawing", len(chosen.figures)) as bar:
             for title in chosen.figures:
@@ -78,8 +78,8 @@ def _methods(seeds: int, jobs: int | None, out: Path) -> None:
     from sigmahat.compare.conditions import JOINTS, TRUE
     from sigmahat.compare.job import CALIBRATED, compare
     from sigmahat.compare.table import as_dicts, table, write
+    from sigmahat.experiments.metrics import MSREP_IN_WORDS
     from sigmahat.files.output import output_folder
-    from sigmahat.runs.metrics import MSREP_IN_WORDS
 
     for joint in JOINTS:
         common.need_fmus(*joint.scenario.fmus)
@@ -88,7 +88,7 @@ def _methods(seeds: int, jobs: int | None, out: Path) -> None:
         with common.progress("Running", len(JOINTS) * seeds) as bar:
             rows = compare(JOINTS, range(1, seeds + 1), jobs, progress=bar.update)
         from sigmahat.compare.figure import draw
-        from sigmahat.plotting.figure import save
+        from sigmahat.show.figure import save
 
         save(draw, rows, folder / "compare")
         write(rows, seeds, folder / "compare.csv")
@@ -118,7 +118,7 @@ def _misfits(seeds: int, jobs: int | None, out: Path) -> None:
         with common.progress("Running", len(pairs(CONDITIONS, JOINTS)) * seeds) as bar:
             rows = compare(CONDITIONS, JOINTS, range(1, seeds + 1), jobs, bar.update)
         from sigmahat.compare.misfits.figure import draw
-        from sigmahat.plotting.figure import save
+        from sigmahat.show.figure import save
 
         save(draw, rows, folder / "misfits")
         write(rows, seeds, folder / "misfits.csv")

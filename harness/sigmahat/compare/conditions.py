@@ -7,10 +7,10 @@ case is the difference between the motor data of the estimators and the motor da
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+from sigmahat.experiments.scenario import Comparison, Scenario, Sine
 from sigmahat.fmi.instance import Value
 from sigmahat.fmi.master import EstimatorFmu
 from sigmahat.paper.scenarios import SCENARIOS, awas, lever_arm
-from sigmahat.runs.scenario import Comparison, Scenario, Sine
 
 PAPER2011, REGRESSION = METHODS = ("Paper2011", "FilteredRegression")
 TRUE = {"D_theta": 1e-3, "B": 2.3e-5}  # motor data of every joint here [N.m.s/rad], [kg.m2]

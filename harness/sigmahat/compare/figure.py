@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 from sigmahat.compare.conditions import METHODS, PAPER2011, REGRESSION
 from sigmahat.compare.job import Row
 from sigmahat.compare.table import case, lever_arm
-from sigmahat.plotting.style import BLUE, VERMILION
+from sigmahat.show.style import BLUE, VERMILION
 
 _COLORS = {PAPER2011: VERMILION, REGRESSION: BLUE}
 _MARKERS = "ovsD^"

@@ -7,10 +7,10 @@ from functools import partial
 import numpy as np
 
 from sigmahat.compare.conditions import METHODS, Case, Joint, comparison_name
+from sigmahat.experiments.engine import Progress, indices_by_comparison, measured, run_all
+from sigmahat.experiments.metrics import INDICES, Index
+from sigmahat.experiments.scenario import Scenario, signal_of, source_and_variable
 from sigmahat.fmi.master import Recording
-from sigmahat.runs.engine import Progress, indices_by_comparison, measured, run_all
-from sigmahat.runs.metrics import INDICES, Index
-from sigmahat.runs.scenario import Scenario, signal_of, source_and_variable
 
 CALIBRATED = 2.0  # time from which on sigma_std is compared with the error [s]
 MOTOR = ("D_theta", "B", "tau_coulomb")
@@ -75,7 +75,7 @@ def compare(
 ) -> list[Row]:
     """Runs every joint with every seed of the plant's noise; the rows of the table.
 
-    processes, progress   as for sigmahat.runs.engine.run_all(); one run is one job
+    processes, progress   as for sigmahat.experiments.engine.run_all(); one run is one job
 
     Raises what simulate() raises, and WorkerError if another program ended a process.
     """

@@ -8,12 +8,12 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from sigmahat import joint
+from sigmahat import result
+from sigmahat.experiments.scenario import Scenario
 from sigmahat.export import archive
 from sigmahat.files.templates import environment
 from sigmahat.fmi.instance import Fmu, Value
 from sigmahat.paper.scenarios import scenario
-from sigmahat.runs.scenario import Scenario
 
 
 def write(ssp: Path, plant: Path, estimator: Path, templates: Path, version: str) -> None:
@@ -24,7 +24,7 @@ def write(ssp: Path, plant: Path, estimator: Path, templates: Path, version: str
     table1 = scenario("table1")
     residual = table1.estimators["RESIDUAL"]
     connections = residual.connections
-    jinja = environment(templates, Path(joint.__file__).with_name("templates"))
+    jinja = environment(templates, Path(result.__file__).with_name("templates"))
     with Fmu(plant) as of_plant, Fmu(estimator) as of_estimator, TemporaryDirectory() as folder:
         units = {u.name: u for f in (of_plant, of_estimator) for u in f.description.unitDefinitions}
         sent = dict.fromkeys((*connections.values(), "sigma"))

@@ -13,13 +13,13 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from sigmahat import guessing
+from sigmahat import guess
 from sigmahat.export import cross_compiler
 from sigmahat.export.system import torques
 from sigmahat.files import toml_file
 from sigmahat.fmi.instance import Fmu, Value
-from sigmahat.logs.configuration import ANOTHER_ROBOT, ANY_COULOMB
 from sigmahat.paper.scenarios import scenario
+from sigmahat.recording.configuration import ANOTHER_ROBOT, ANY_COULOMB
 
 FUNCTIONS = (
     *("fmi2Instantiate", "fmi2SetupExperiment", "fmi2EnterInitializationMode"),
@@ -52,7 +52,7 @@ def write(out: Path, page: Path, fmus: list[Path], cache: Path) -> None:
         if file.suffix in (".html", ".css", ".js"):
             shutil.copyfile(file, out / file.name)
     # The words by which `sigmahat init` recognises columns.
-    words = toml_file.read(Path(guessing.__file__).parent / "vocabulary.toml").unwrap()
+    words = toml_file.read(Path(guess.__file__).parent / "vocabulary.toml").unwrap()
     data = {"FMUS": types, "SCENARIO": _scenario(opened), "WORDS": words, "UNKNOWN": _UNKNOWN}
     encode = json.JSONEncoder(separators=(",", ":"), default=dict).encode
     lines = ['"use strict";', *(f"const {name} = {encode(each)};" for name, each in data.items())]

@@ -2,7 +2,7 @@
 
 import math
 
-from sigmahat.logs.log import EXACT
+from sigmahat.recording.log import EXACT
 
 _LATE = 1.0  # a sample that is late by less than this time was overtaken by other samples [s]
 LONGEST_PAUSE = 1.0  # [s] after a longer one, the time is wrong or the sender has restarted

@@ -18,11 +18,11 @@ from typing import TYPE_CHECKING, BinaryIO
 import numpy as np
 
 from sigmahat.live.joint import Estimated
+from sigmahat.live.loop import Inbox, Sink, Source
 from sigmahat.live.messages import LONGEST, Columns, Decoder
 from sigmahat.live.session import Session
-from sigmahat.live.watch import Inbox, Sink, Source
-from sigmahat.logs.log import Log
-from sigmahat.logs.readers.formats import open_log
+from sigmahat.recording.log import Log
+from sigmahat.recording.readers.formats import open_log
 
 if TYPE_CHECKING:
     from sigmahat.live.ros2 import Ros2

@@ -10,7 +10,7 @@ import foxglove
 
 from sigmahat.fmi.series import schema
 from sigmahat.live.joint import BANDED, GIVEN, Estimated, LiveJoint
-from sigmahat.live.watch import Sink
+from sigmahat.live.loop import Sink
 
 
 def serve(address: tuple[str, int], joints: Sequence[LiveJoint]) -> Sink:

@@ -1,6 +1,7 @@
 """Runs the estimator of one joint on line, with samples at the ticks of the estimator.
 
-Samples are interpolated at the ticks, and units and counters converted, as in logs/sampling.py.
+Samples are interpolated at the ticks, and units and counters converted, as in
+recording/resampling.py.
 """
 
 import math
@@ -16,16 +17,16 @@ from numpy.typing import NDArray
 from sigmahat.files.output import finite
 from sigmahat.fmi.instance import Slave, installed
 from sigmahat.fmi.sample_loop import Recorder, SampleLoop
-from sigmahat.joint.curve import NORMAL_95
-from sigmahat.joint.stored import LearnedLog
 from sigmahat.live.clock import Clock
 from sigmahat.live.messages import Columns
-from sigmahat.logs.configuration import Configuration, Port
-from sigmahat.logs.learned import Learned, go_on, write_learned
-from sigmahat.logs.log import LogError
-from sigmahat.logs.replay import gap, parameters
-from sigmahat.logs.sampling import AT_TICK, counter, turns_from
-from sigmahat.logs.units import scale, seconds
+from sigmahat.recording.configuration import Configuration, Port
+from sigmahat.recording.log import LogError
+from sigmahat.recording.replay import gap, parameters
+from sigmahat.recording.resampling import AT_TICK, counter, turns_from
+from sigmahat.recording.units import scale, seconds
+from sigmahat.result.curve import NORMAL_95
+from sigmahat.result.learned import Learned, go_on, write_learned
+from sigmahat.result.stored import LearnedLog
 
 OUTPUTS = ("sigma", "sigma_std", "tau_e", "tau_e_std", "phi", "setPoint", "misfit", "change_age")
 """Real outputs that are sent to the sinks."""
@@ -112,7 +113,7 @@ class LiveJoint:
     ) -> None:
         """clocks  by time column, "" for the time of arrival; missing clocks are added
 
-        Raises the errors of logs/job.py for a configuration or a state that does not fit.
+        Raises the errors of result/replayed_log.py for a configuration or state that does not fit.
         """
         fmu = installed("StiffnessEstimator")
         start = parameters(fmu, configuration)
@@ -229,7 +230,7 @@ class LiveJoint:
 
 
 class _Counter:
-    """Corrects a counter by whole periods after gaps and at the start, as logs/sampling.py does."""
+    """Corrects a counter by whole periods after gaps and at the start, as for a log."""
 
     def __init__(self, configuration: Configuration) -> None:
         self._ports = configuration.ports

@@ -25,8 +25,8 @@ from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 
 from sigmahat.live.joint import Estimated
+from sigmahat.live.loop import Inbox, Sink, Source
 from sigmahat.live.messages import Columns, number
-from sigmahat.live.watch import Inbox, Sink, Source
 
 ESTIMATES, DIAGNOSTICS = "/sigmahat/estimates", "/diagnostics"  # topics that are written
 

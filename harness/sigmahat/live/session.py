@@ -22,9 +22,9 @@ from sigmahat.files.output import sha256, write_whole
 from sigmahat.live.clock import Clock
 from sigmahat.live.joint import Estimated, LiveJoint
 from sigmahat.live.messages import Columns
-from sigmahat.logs import joints as of_file
-from sigmahat.logs.configuration import joints_of, read_configuration, read_document
-from sigmahat.logs.learned import LEARNED, read_learned
+from sigmahat.recording import several_joints as of_file
+from sigmahat.recording.configuration import joints_of, read_configuration, read_document
+from sigmahat.result.learned import LEARNED, read_learned
 
 ARRIVAL = "arrival"  # column for messages without a stamp: time of arrival [ns] since 1970
 _ROWS = 1 << 16  # rows of a row group; each group needs 20 kB of memory until the file ends

@@ -11,14 +11,14 @@ from pathlib import Path
 import numpy as np
 import tomlkit
 
-from sigmahat.identification.identify import identify
-from sigmahat.identification.write import update
-from sigmahat.joint.curve import stiffness_in_the_middle
-from sigmahat.logs.configuration import checked_configuration
-from sigmahat.logs.estimate import estimate
-from sigmahat.logs.log import LogError, LogInMemory
-from sigmahat.motion.joints import Array, Joint, Limits, Multisine, Ranges
-from sigmahat.runs.engine import run_all
+from sigmahat.experiments.engine import run_all
+from sigmahat.motion.joints_of_log import Array, Joint, Limits, Multisine, Ranges
+from sigmahat.motor.identify import identify
+from sigmahat.motor.write import update
+from sigmahat.recording.configuration import checked_configuration
+from sigmahat.recording.log import LogError, LogInMemory
+from sigmahat.result.curve import stiffness_in_the_middle
+from sigmahat.result.estimate import estimate
 
 _RATIOS = (1.0, 1.618, 2.713, 4.237)  # ratios of the frequencies: no multiples of each other
 _PHASES = (0.0, 1.0, 2.0, 3.0)

@@ -7,7 +7,7 @@ import numpy as np
 
 from sigmahat.files.output import write_whole
 from sigmahat.files.tables import write_csv
-from sigmahat.motion.joints import Multisine
+from sigmahat.motion.joints_of_log import Multisine
 
 _ROS_PERIOD = 0.01  # [s]
 FILES = ("motion.csv", "motion.yaml", "motion.c")  # names of the files

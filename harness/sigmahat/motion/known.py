@@ -2,16 +2,16 @@
 
 import numpy as np
 
-from sigmahat.identification.noise import low_pass
-from sigmahat.identification.regression import signals_of
-from sigmahat.joint.curve import stiffness_in_the_middle
-from sigmahat.logs.configuration import Configuration
-from sigmahat.logs.estimate import Estimate, estimate
-from sigmahat.logs.log import Log, LogError
-from sigmahat.logs.replay import all_parameters
-from sigmahat.logs.sampling import sample
 from sigmahat.motion.design import NOISE, Sensors
-from sigmahat.motion.joints import Joint, Limits, Ranges
+from sigmahat.motion.joints_of_log import Joint, Limits, Ranges
+from sigmahat.motor.equation import signals_of
+from sigmahat.motor.noise import low_pass
+from sigmahat.recording.configuration import Configuration
+from sigmahat.recording.log import Log, LogError
+from sigmahat.recording.replay import all_parameters
+from sigmahat.recording.resampling import sample
+from sigmahat.result.curve import stiffness_in_the_middle
+from sigmahat.result.estimate import Estimate, estimate
 
 _COUNTS = 400_000.0  # counts per turn at the gear output, without a configuration
 _PERIOD = 1e-3  # [s]

@@ -14,13 +14,13 @@ from typing import TYPE_CHECKING, Any
 
 from numpy.typing import NDArray
 
+from sigmahat.experiments.engine import Progress, indices_by_comparison, measured, run, run_all
+from sigmahat.experiments.metrics import INDICES, Index, Indices, mean_interval
+from sigmahat.experiments.scenario import Scenario
 from sigmahat.files import tables
 from sigmahat.files.tables import aligned, numeric_columns, read_csv, write_csv
 from sigmahat.fmi.master import Recording
 from sigmahat.fmi.series import Series
-from sigmahat.runs.engine import Progress, indices_by_comparison, measured, run, run_all
-from sigmahat.runs.metrics import INDICES, Index, Indices, mean_interval
-from sigmahat.runs.scenario import Scenario
 
 if TYPE_CHECKING:  # `reproduce` writes its files without pyarrow
     import pyarrow as pa

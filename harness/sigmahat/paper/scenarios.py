@@ -6,10 +6,10 @@ import math
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
+from sigmahat.experiments.scenario import Comparison, Scenario, Sine, Sines, T
 from sigmahat.fmi.instance import Value
 from sigmahat.fmi.master import EstimatorFmu, Plant
 from sigmahat.fmi.unknown_name import unknown
-from sigmahat.runs.scenario import Comparison, Scenario, Sine, Sines, T
 
 OUTPUTS = (
     "sigma", "tau_e", "tau_e_residual", "theta_dot", "phi", "setPoint", "a", "rho", "epsilon",

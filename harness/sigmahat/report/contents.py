@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sigmahat.files.tables import name_and_unit
-from sigmahat.plotting.panels import Panel
-from sigmahat.plotting.style import plain_title
+from sigmahat.show.panel import Panel
+from sigmahat.show.style import plain_title
 
 if TYPE_CHECKING:
     import pyarrow as pa

@@ -8,7 +8,9 @@ from pathlib import Path
 import numpy as np
 
 from sigmahat.files.tables import read_csv
-from sigmahat.joint.curve import (
+from sigmahat.report.contents import Contents, TextTable, number, of_file
+from sigmahat.report.residuals import residual_panels, residuals
+from sigmahat.result.curve import (
     CURVE,
     Curve,
     headline,
@@ -17,15 +19,19 @@ from sigmahat.joint.curve import (
     read_curve,
     stiffness_table,
 )
-from sigmahat.joint.sheet import FORMAT, Sheet
-from sigmahat.logs.curve import POINTS, MeasuredPoints, read_points
-from sigmahat.logs.data_sheet import WORDS
-from sigmahat.logs.estimate import JOINTS
-from sigmahat.logs.output import REPLAYED, EstimateTable, Replayed
-from sigmahat.logs.panels import curve_panels, quantity_panels, reduce, sampling, stiffness_panels
-from sigmahat.plotting.style import plain_text, plain_title, plain_unit
-from sigmahat.report.contents import Contents, TextTable, number, of_file
-from sigmahat.report.residuals import residual_panels, residuals
+from sigmahat.result.curve_of_log import POINTS, MeasuredPoints, read_points
+from sigmahat.result.data_sheet import WORDS
+from sigmahat.result.estimate import JOINTS
+from sigmahat.result.estimate_table import REPLAYED, EstimateTable, Replayed
+from sigmahat.result.log_panels import (
+    curve_panels,
+    quantity_panels,
+    reduce,
+    sampling,
+    stiffness_panels,
+)
+from sigmahat.result.sheet import FORMAT, Sheet
+from sigmahat.show.style import plain_text, plain_title, plain_unit
 
 _OF_THE_METHOD = ("a", "rho")  # inner outputs of the method, which are not in the table
 

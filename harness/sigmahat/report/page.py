@@ -8,13 +8,13 @@ from bokeh.embed import components
 from bokeh.resources import Resources
 
 from sigmahat.files.templates import environment
-from sigmahat.logs.estimate import JOINTS
-from sigmahat.logs.panels import quantity_panels, reduce, sampling, stiffness_panels
 from sigmahat.paper.reproduction import SEEDS, TABLE, TIME, read_result_files
-from sigmahat.plotting.style import PAGE
 from sigmahat.report.contents import Contents, TextTable, of_file
 from sigmahat.report.from_log import from_joints, from_log
-from sigmahat.report.plots import plots
+from sigmahat.result.estimate import JOINTS
+from sigmahat.result.log_panels import quantity_panels, reduce, sampling, stiffness_panels
+from sigmahat.show.plots import plots
+from sigmahat.show.style import PAGE
 from sigmahat.sweep.panels import against_parameters, distributions
 from sigmahat.sweep.summary import summary_columns
 from sigmahat.sweep.table import FAILURE, RUN, Role, read, title

@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sigmahat.joint.curve import NORMAL_95
-from sigmahat.plotting.panels import COLORS, TRUE, Curve, Panel
-from sigmahat.plotting.style import QUANTITIES, around, plain_axis
+from sigmahat.result.curve import NORMAL_95
+from sigmahat.show.panel import COLORS, TRUE, Curve, Panel
+from sigmahat.show.style import QUANTITIES, around, plain_axis
 
 Array = NDArray[np.float64]
 

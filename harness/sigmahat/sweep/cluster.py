@@ -1,11 +1,11 @@
-"""Runs jobs on a Dask cluster; sigmahat.runs.pool runs jobs in processes of this machine."""
+"""Runs jobs on a Dask cluster; sigmahat.experiments.pool runs jobs in processes of this machine."""
 
 import asyncio
 import logging
 from collections.abc import Callable, Generator, Sequence
 from typing import Any, TypeVar
 
-from sigmahat.runs.pool import WorkerError, WorkersLostError
+from sigmahat.experiments.pool import WorkerError, WorkersLostError
 
 Result = TypeVar("Result")
 

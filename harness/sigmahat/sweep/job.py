@@ -8,10 +8,10 @@ from dataclasses import astuple
 from functools import partial
 from pathlib import Path
 
+from sigmahat.experiments.engine import Progress
+from sigmahat.experiments.metrics import Indices
+from sigmahat.experiments.pool import WorkersLostError, spread
 from sigmahat.files.output import created_folder, output_folder
-from sigmahat.runs.engine import Progress
-from sigmahat.runs.metrics import Indices
-from sigmahat.runs.pool import WorkersLostError, spread
 from sigmahat.sweep.cluster import spread_on_cluster
 from sigmahat.sweep.plan import Outcome, Plan, Run
 from sigmahat.sweep.preparation import check, execute, identity
@@ -90,7 +90,7 @@ def sweep(
         if len(failures) == plan.count:
             raise ValueError(f"every run failed; message of the first: {failures[0]}")
         table = of_outcomes(plan, outcomes)
-        from sigmahat.plotting.figure import save, stacked
+        from sigmahat.show.figure import save, stacked
         from sigmahat.sweep.panels import against_parameters, distributions
 
         with output_folder(out) as folder:

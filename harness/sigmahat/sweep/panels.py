@@ -5,8 +5,8 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from sigmahat.plotting.panels import COLORS, Curve, Kind, Panel
-from sigmahat.runs.metrics import INDICES, Index, mean_interval
+from sigmahat.experiments.metrics import INDICES, Index, mean_interval
+from sigmahat.show.panel import COLORS, Curve, Kind, Panel
 from sigmahat.sweep.table import (
     ESTIMATION,
     FAILURE,

@@ -6,14 +6,14 @@ from collections.abc import Mapping
 from dataclasses import replace
 from functools import lru_cache
 
+from sigmahat.experiments.engine import SEED, indices_by_comparison, measured
+from sigmahat.experiments.pool import WorkerError
+from sigmahat.experiments.scenario import PLANT, Scenario, to_record
 from sigmahat.fmi.installed import fmu as installed_fmu
 from sigmahat.fmi.instance import FmuError, Slave, Value, installed
 from sigmahat.fmi.master import EstimatorFmu, Plant
 from sigmahat.fmi.unknown_name import unknown
 from sigmahat.paper.scenarios import scenario
-from sigmahat.runs.engine import SEED, indices_by_comparison, measured
-from sigmahat.runs.pool import WorkerError
-from sigmahat.runs.scenario import PLANT, Scenario, to_record
 from sigmahat.sweep.plan import Outcome, Plan, Run
 
 ALL = "estimator"  # owner of a parameter of all estimators

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from sigmahat.experiments.metrics import INDICES, Index, mean_interval
 from sigmahat.files import tables
 from sigmahat.paper.scenarios import SCENARIOS
-from sigmahat.runs.metrics import INDICES, Index, mean_interval
 from sigmahat.sweep.plan import Plan
 from sigmahat.sweep.table import (
     ESTIMATION,

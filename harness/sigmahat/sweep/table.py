@@ -15,10 +15,10 @@ import pyarrow as pa
 import pyarrow.parquet
 from numpy.typing import NDArray
 
+from sigmahat.experiments.metrics import INDICES, Index, Indices
+from sigmahat.experiments.scenario import PLANT, source_and_variable
 from sigmahat.files import tables
 from sigmahat.fmi.instance import Value, installed
-from sigmahat.runs.metrics import INDICES, Index, Indices
-from sigmahat.runs.scenario import PLANT, source_and_variable
 from sigmahat.sweep.plan import Outcome, Plan
 from sigmahat.sweep.preparation import ALL, models, parameters_by_owner, reduced
 

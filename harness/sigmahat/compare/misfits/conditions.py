@@ -19,7 +19,7 @@ from sigmahat.compare.misfits.experiment import (
     Joint,
 )
 from sigmahat.compare.misfits.motion import peak_deformation
-from sigmahat.runs.scenario import Sine, Sines
+from sigmahat.experiments.scenario import Sine, Sines
 
 
 def other_joint(experiment: Experiment) -> Experiment:

@@ -9,8 +9,8 @@ from enum import Enum
 
 import numpy as np
 
+from sigmahat.experiments.scenario import Sine, Sines
 from sigmahat.fmi.instance import Value
-from sigmahat.runs.scenario import Sine, Sines
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from matplotlib.patches import Patch, Rectangle
 from sigmahat.compare.misfits.conditions import Group
 from sigmahat.compare.misfits.experiment import JOINTS
 from sigmahat.compare.misfits.job import DANGEROUS_CLAIM, DANGEROUS_ERROR, Row
-from sigmahat.plotting.style import CYCLE
+from sigmahat.show.style import CYCLE
 
 _MARKERS = dict(zip((joint.name for joint in JOINTS), "o^s", strict=True))
 _COLORS = dict(zip(Group, CYCLE, strict=True))

@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 from sigmahat.compare.misfits.conditions import CONDITIONS, Condition
 from sigmahat.compare.misfits.experiment import JOINTS, Experiment, Joint, draw
 from sigmahat.compare.misfits.motion import Motion, run
+from sigmahat.experiments.engine import Progress, run_all
 from sigmahat.fmi.instance import Slave, Value, installed
-from sigmahat.logs.replay import play
-from sigmahat.logs.sampling import Samples
-from sigmahat.runs.engine import Progress, run_all
+from sigmahat.recording.replay import play
+from sigmahat.recording.resampling import Samples
 
 SETTLED = 2.0  # time after the start of the torque from which an estimate is judged [s]
 DANGEROUS_ERROR, DANGEROUS_CLAIM = 0.1, 0.02
@@ -130,7 +130,7 @@ def compare(
 ) -> list[Row]:
     """Runs each condition of CONDITIONS on the joints where the misfit of the condition can occur.
 
-    processes, progress   as for sigmahat.runs.engine.run_all(); one run is one job
+    processes, progress   as for sigmahat.experiments.engine.run_all(); one run is one job
 
     Raises ValueError for an unknown start value, FmuError if an FMU refuses, and WorkerError if
     another program ended a process.

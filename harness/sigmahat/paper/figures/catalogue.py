@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from sigmahat.experiments.scenario import signal_of
 from sigmahat.fmi.master import Recording
 from sigmahat.paper.figures.panels import (
     ESTIMATES,
@@ -25,8 +26,7 @@ from sigmahat.paper.figures.panels import (
     stiffness,
     window,
 )
-from sigmahat.plotting.style import BLUE, GREEN, SKY, VERMILION, math_axis
-from sigmahat.runs.scenario import signal_of
+from sigmahat.show.style import BLUE, GREEN, SKY, VERMILION, math_axis
 
 _NOMINAL: dict[str, Any] = {"color": "black", "linewidth": 0.8, "label": "nominal"}
 

@@ -7,9 +7,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
+from sigmahat.experiments.scenario import NOMINAL, PLANT, signal_of, source_and_variable
 from sigmahat.fmi.master import Recording
-from sigmahat.plotting.style import BLUE, GREEN, VERMILION, math_axis
-from sigmahat.runs.scenario import NOMINAL, PLANT, signal_of, source_and_variable
+from sigmahat.show.style import BLUE, GREEN, VERMILION, math_axis
 
 Array = NDArray[np.float64]
 Signal = str | Callable[[Recording], Array]  # a signal of a comparison, or a function that has it

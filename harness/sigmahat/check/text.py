@@ -1,0 +1,143 @@
+"""Converts the findings of a check to sentences for the user."""
+
+import math
+from collections.abc import Mapping
+
+from sigmahat.check.findings import Checked, Finding, Kind, Proposal, Severity
+from sigmahat.result.data_sheet import WORDS
+
+TITLES = {
+    Severity.WRONG: "checked, likely wrong in the configuration:",
+    Severity.NOTE: "worth a look:",
+    Severity.RESTS_ON: "assumptions that no log can verify:",
+}
+DOUBTS = {
+    "NotExcited": ("ports.q.column", "the motion was too small or too short"),
+    "Misfit": ("rls.n", "the log contradicts the model"),
+    "OutOfRange": ("range.phi", "the deformation is far beyond range.phi"),
+    "FrictionOutsidePrior": (
+        "motor.D_theta",
+        "friction is further from motor.D_theta than prior.D_theta, or below 0",
+    ),
+    "InertiaOutsidePrior": ("motor.B", "the inertia is further from motor.B than prior.B allows"),
+    "NegativeStiffness": ("ports.q.sign", "the stiffness found is negative"),
+    "Change": ("rls.n", "the stiffness seems to change"),
+}
+"""Items of the FMU output `doubt`, with the key to check first and a description."""
+
+
+def summary(checked: Checked) -> str:
+    """Formats all findings as text that fits on one screen."""
+    lines = [] if checked.is_wrong else [nothing_found(checked)]
+    for severity, title in TITLES.items():
+        if found := checked.of(severity):
+            lines += [title, *(f"  {sentence(each)}" for each in found)]
+    return "\n".join(lines)
+
+
+def nothing_found(checked: Checked) -> str:
+    """Returns the line of text for a log that does not contradict the configuration."""
+    seconds = f"{checked.ticks * checked.T:.6g} s"
+    return f"checked: nothing in {seconds} of the log contradicts the configuration"
+
+
+def rows(checked: Checked) -> list[tuple[str, str]]:
+    """Returns severity and sentence of each finding."""
+    return [(each.severity.value, sentence(each)) for each in checked.findings]
+
+
+def sentence(finding: Finding) -> str:
+    """Describes a finding in one line: the key, the error, and the proposed value."""
+    return f"{finding.key}: {_what(finding)}{_proposal(finding)}"
+
+
+def _proposal(finding: Finding) -> str:
+    if finding.proposed is None and not finding.others:
+        return ""
+    first = "" if finding.proposed is None else f"; try {_value(finding.proposed)}"
+    others = [key if v is None else f"{key} = {_value(v)}" for key, v in finding.others]
+    return f"{first}; else look at {' or '.join(others)}" if others else first
+
+
+def _value(value: Proposal) -> str:
+    if isinstance(value, str):
+        return f'"{value}"'
+    return str(value).lower() if isinstance(value, bool) else f"{value:.9g}"
+
+
+def _number(value: float | None, unit: str) -> str:
+    return "" if value is None else f"{value:.3g} {unit}".rstrip()
+
+
+def _what(f: Finding) -> str:
+    """Formats the sentence for the kind of the finding, with measured and expected values."""
+    template = _SPECIAL.get((f.kind, f.about)) or _SENTENCES[f.kind]
+    if f.kind is Kind.TORQUE_LAG and f.measured < 0:
+        template = "the torque is {ms} earlier than the motion explains, or the spring is damped"
+    return template.format(
+        measured=_number(f.measured, f.unit),
+        expected=_number(f.expected, f.unit),
+        value=f.measured,
+        about=f.about,
+        percent=f"{100 * f.measured:.3g} %",
+        ms=f"{1e3 * abs(f.measured):.3g} ms",
+        later="later" if f.measured > 0 else "earlier",
+        ratio=f.measured / f.expected if f.expected else math.nan,
+        gear=f"the gear ratio of {f.about}" if f.key == "motor.gamma" else "motor.gamma",
+        given=f.expected,
+        reason=DOUBTS.get(f.about, ("", f.about))[1],
+        effect=WORDS.get(f.about, ""),
+        gain=f"known to {100 * f.expected:.3g} %" if f.expected else "taken as exact",
+    )
+
+
+_SPECIAL = {
+    (Kind.SLOPE, "held"): "q moves {value:.4g} times as far as theta, expected about 1, unless a "
+    "hand moves the link while the motor is held",
+    (Kind.SLOPE, "sign"): "q moves against theta",
+    (Kind.SLOPE, "swap"): "the columns of theta and q are swapped: the link would move "
+    "{value:.4g} times as far",
+    (Kind.AT_REST, "q"): "the link does not move while the motor does: its encoder is dead, or the "
+    "column is wrong. If the link is locked on purpose, write ports.q.value = 0 in place of the "
+    "column",
+    (Kind.AT_REST, "theta"): "the motor does not move while the link does: its encoder is dead, "
+    "or the column is wrong",
+}
+_INERTIA = "the log shows an inertia of {measured}, {ratio:.3g} times motor.B"
+_SENTENCES: Mapping[Kind, str] = {
+    Kind.AT_REST: "the joint is at rest throughout the {measured} of the log; record a joint that "
+    "moves",
+    Kind.SLOPE: "q moves {value:.4g} times as far as theta, expected about 1",
+    Kind.GEAR: "it is {value:g}, but {gear} is {given:g}",
+    Kind.SIGN: "with this sign inertia, friction or stiffness are negative: the stiffness would be "
+    "{measured}",
+    Kind.STIFFNESS_SIGN: "the stiffness would be {measured}, below 0; a deformation of the "
+    "wrong sign or scale does that",
+    Kind.ZERO: "the spring has no torque at a deformation of {measured}, not at 0",
+    Kind.ASYMMETRY: "the torque is not symmetric in phi: the errors are {value:.3g} times as "
+    "large as with all powers",
+    Kind.TORQUE_LAG: "the torque is {ms} later than the motion explains",
+    Kind.ENCODER_LAG: "the viscous friction would be negative, as if q were recorded {about}{ms} "
+    "{later} than theta",
+    Kind.INERTIA: _INERTIA,
+    Kind.TORQUE_SCALE: f"{_INERTIA}, as if the torque were geared twice or not at all",
+    Kind.OTHER_ROBOT: "{value:.4g} is the start value, of another robot",
+    Kind.UNIT: "{about}; a wrong unit of both changes nothing but the stiffness",
+    Kind.STEP: "the values of {about} change in steps of {measured}, the configured encoder has "
+    "{expected}",
+    Kind.JUMP: "{about} jumps by {measured}, as a counter that starts again",
+    Kind.SPIKE: "{about} is up to {measured} away from both neighbours in {given:g} samples: they "
+    "were lost, leave them empty",
+    Kind.SATURATION: "the torque stays at an end of its range for {percent} of the samples",
+    Kind.NO_TORQUE: "the torque is only noise ({measured}): the motor is off, or the column is "
+    "wrong. The stiffness then rests on motor.B, motor.D_theta and the Coulomb friction alone",
+    Kind.NOISE: "the noise of the torque is {measured}, the configuration says {expected}",
+    Kind.MISFIT: "the errors of the model are {value:.3g} times as large as noise explains",
+    Kind.DOUBT: "not confident in {percent} of the second half: {reason}",
+    Kind.RANGE: "the log has up to {measured}, the configuration {expected} (identify sets it)",
+    Kind.LEARNED: "the estimator learned at {percent} of the ticks only",
+    Kind.TORQUE_GAIN: "gain of the torque, {gain}; 1 % of it changes the stiffness by "
+    "{value:.3g} %",
+    Kind.EXACT: "motor.{about} = {value:.4g} is taken as exact",
+    Kind.ABSENT: "no {effect} is assumed",
+}

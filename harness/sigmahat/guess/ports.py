@@ -1,0 +1,249 @@
+"""Guesses units, signs, zeros and gear of the columns for the ports of one joint."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from sigmahat.guess.columns import TURN, Column, Columns, counts_per_turn, unit_of_steps
+from sigmahat.guess.relations import line, scale_of_derivative
+from sigmahat.guess.roles import Role, Roles
+from sigmahat.recording.log import Array
+
+_AFTER_GEAR = 1.4  # largest ratio of motor to link motion if the encoder is after the gear
+_AS_FAR = 0.15  # largest relative difference between the motions of motor and link after the gear
+_WHOLE = 0.002  # relative difference up to which a gear ratio is rounded to an integer
+_STIFF = 0.005  # largest ratio of deformation to motion if the motion determines the gear ratio
+_APART = 4.0  # largest mean of the deformation with equal zeros, in standard deviations
+_RADIANS = 6.6  # largest magnitude of a joint position in rad; a larger position is in degrees
+_MILLI = 100.0  # largest magnitude of a current in A; a larger current is in mA
+_SINGLE_TURN = (2.0**10, 2.0**15)  # wraps of absolute encoders; 16 and 32 bits are counters
+_SURE = 0.8  # least correlation with the deformation that determines the sign of a torque sensor
+
+
+@dataclass
+class PortGuess:
+    """The column of a port, as the keys of a configuration describe it."""
+
+    column: str
+    why: str  # reason for the choice of the column
+    low: float
+    high: float  # range of its values
+    unit: str | None  # None if the unit cannot be guessed, and the user has to fill in `scale`
+    wrap: float | None
+    """Period of a counter that starts again, in the unit of the column; None without a period."""
+    time: str | None  # the time column of the port, if it differs from the time column of the joint
+    notes: dict[str, str]  # comments for the user by key of the configuration
+    sign: int = 1  # 1 or -1
+    zero: float = 0.0  # zero of the port, in the unit of the column
+    gear_ratio: float | None = 1.0  # None if the user has to fill in the gear ratio
+    moves: float | None = None
+    """For theta: approximate ratio of its motion to the motion of the link; None if not known.
+
+    For a motor in counts, the number of counts per turn of the link.
+    """
+    counts_per_turn: float | None = None
+    """For the unit counts; None if the user has to fill in the number."""
+    steps: int = 0
+    """Steps of the values per turn, if the unit is not counts; 0 if the values have no steps."""
+
+
+def guess_ports(roles: Roles, columns: Columns, main: str | None) -> dict[str, PortGuess]:
+    """Guesses every port that has a column; main is the time column of the joint."""
+    ports = {port: _plain(port, role, main) for port, role in roles.ports.items()}
+    angles = {port: roles.ports[port].column for port in ("theta", "q") if port in ports}
+    for port, column in angles.items():
+        _set_unit(ports[port], column, columns, port == "q")
+    if len(angles) == 2:
+        _set_together(ports["theta"], ports["q"], *angles.values())
+    if "tau" in ports:
+        _set_torque(ports["tau"], roles)
+    if "tau_e_sensor" in ports:
+        _set_sensor(ports, roles)
+    return ports
+
+
+def _plain(port: str, role: Role, main: str | None) -> PortGuess:
+    """Creates a port with the unit from the name of the column."""
+    column = role.column
+    facts, unit = column.facts, column.meaning.unit
+    notes: dict[str, str] = {}
+    if port == "theta_c" and unit is None:
+        unit = "counts" if facts.integer else "rad"
+        notes["unit"] = "CHECK: no unit in the name"
+    wrap = facts.wrap if unit not in ("A", "mA", "N.m", "mN.m") else None
+    if wrap is not None:
+        notes["wrap"] = "CHECK: the column jumps by this value"
+    time = column.clock if column.clock != main else None
+    return PortGuess(column.name, role.why, facts.low, facts.high, unit, wrap, time, notes)
+
+
+def _angle(column: Column, columns: Columns, is_link: bool) -> tuple[str, str]:
+    """Guesses the unit of a position, and the reason; "" if the column name contains a unit."""
+    if column.meaning.unit is not None:
+        return column.meaning.unit, ""
+    if column.facts.integer:
+        return "counts", "whole numbers"
+    unit = unit_of_steps(column.facts)
+    if unit:
+        return unit, f"by its steps, 1/{counts_per_turn(column.facts, unit)} turn"
+    unit = _unit_by_velocity(column, columns.signals, columns.window_T)
+    if unit:
+        return unit, "by its velocity"
+    farthest = max(abs(column.facts.low), abs(column.facts.high))
+    for unit, turn in TURN.items():
+        if column.facts.wrap == turn:
+            return unit, "by its wrap"
+    if is_link and farthest > _RADIANS:
+        return "deg", "CHECK: too far for rad"
+    return "rad", "CHECK: no unit in the name"
+
+
+def _unit_by_velocity(column: Column, signals: Sequence[Column], T: float) -> str | None:
+    """Finds the unit of a position by a column with its velocity, whose name contains a unit."""
+    for other in signals:
+        speed = other.meaning.speed
+        unit, _, minute = (speed or "").partition("/")
+        if unit not in TURN or not len(other.window):
+            continue
+        scale = scale_of_derivative(column.window, other.window, T)
+        if scale is None:
+            continue
+        turn = TURN[unit] * (60 if minute else 1) / abs(scale)  # one turn in the unit of the column
+        best = min(TURN, key=lambda each: abs(math.log(turn / TURN[each])))
+        if abs(math.log(turn / TURN[best])) < 0.05:
+            return best
+    return None
+
+
+def _set_unit(port: PortGuess, column: Column, columns: Columns, is_link: bool) -> None:
+    port.unit, how = _angle(column, columns, is_link)
+    port.steps = counts_per_turn(column.facts, port.unit)
+    if how:
+        port.notes["unit"] = how
+    wrap, (least, most) = column.facts.wrap, _SINGLE_TURN
+    if port.unit == "counts" and is_link and wrap is not None and least <= wrap <= most:
+        port.counts_per_turn = wrap
+        port.notes["counts_per_turn"] = "CHECK: the counter starts again after this number"
+
+
+def _set_together(theta: PortGuess, q: PortGuess, motor: Column, link: Column) -> None:
+    """Guesses gear, sign and zeros of both positions, from the common motion of motor and link."""
+    fitted = line(motor.window, link.window)
+    if fitted.slope == 0:
+        return
+    if _is_vague(theta):
+        _set_unit_by_other(theta, q, 1 / abs(fitted.slope))
+    elif _is_vague(q):
+        _set_unit_by_other(q, theta, abs(fitted.slope))
+    _set_gear(theta, q, 1 / abs(fitted.slope), fitted.rest)
+    ratio = _ratio(theta, q)
+    if fitted.slope < 0:
+        q.sign, q.notes["sign"] = -1, "it moves against the motor"
+    slope = math.copysign(ratio or abs(fitted.slope), fitted.slope)
+    deformation = link.window - slope * motor.window
+    spread = max(fitted.rest * float(np.std(link.window)), float(np.std(deformation)))
+    if abs(float(np.mean(deformation))) > _APART * spread:
+        for port, column in ((theta, motor), (q, link)):
+            port.zero = _mean(column)
+            port.notes["zero"] = "CHECK: mean of the column, as the zeros of both do not agree"
+
+
+def _is_vague(port: PortGuess) -> bool:
+    return port.notes.get("unit", "").startswith("CHECK")
+
+
+def _set_unit_by_other(port: PortGuess, other: PortGuess, slope: float) -> None:
+    """Guesses the unit of a position from the other position; slope: ratio of both values."""
+    if other.unit in TURN:
+        same = [unit for unit in TURN if abs(slope * TURN[other.unit] / TURN[unit] - 1) < _AS_FAR]
+        port.unit = same[0] if same else other.unit
+        port.notes["unit"] = "CHECK: from the other position, which turns as far"
+
+
+def _set_gear(theta: PortGuess, q: PortGuess, slope: float, rest: float) -> None:
+    """Sets the gear ratio if both units are known and the joint is stiff; else adds a note.
+
+    slope  ratio of the values of theta to the values of q
+    rest   standard deviation of the residual of this slope, relative to q
+    """
+    if theta.unit in TURN and q.unit in TURN:
+        gear = slope * TURN[q.unit] / TURN[theta.unit]
+        if 1 / _AFTER_GEAR < gear < _AFTER_GEAR:
+            note = "it moves as far as the link, so it is measured after the gear"
+        else:
+            whole = max(round(gear), 1)
+            sure = rest < _STIFF and abs(gear / whole - 1) < _WHOLE
+            theta.gear_ratio, theta.moves = float(whole) if sure else None, gear
+            first = "CHECK" if sure else "FILL IN"
+            note = f"{first}: the motor moves {gear:.4g} times as far as the link"
+    else:
+        theta.gear_ratio = None
+        note = "FILL IN: 1 if theta is measured after the gear"
+        if q.unit in TURN:
+            theta.moves = slope * TURN[q.unit]
+        elif theta.unit == "counts" and q.unit == "counts" and q.counts_per_turn:
+            theta.moves = slope * q.counts_per_turn
+        if theta.moves is not None:
+            note = f"FILL IN: gear_ratio times counts_per_turn is about {theta.moves:.4g}"
+    theta.notes["gear_ratio"] = note
+
+
+def _ratio(theta: PortGuess, q: PortGuess) -> float | None:
+    """Returns the ratio of q to theta without deformation; None for an unknown ratio."""
+    if theta.unit not in TURN or q.unit not in TURN or not theta.gear_ratio:
+        return None
+    return TURN[q.unit] / TURN[theta.unit] / theta.gear_ratio
+
+
+def _mean(column: Column) -> float:
+    mean = float(np.mean(column.window))
+    return float(round(mean)) if column.facts.integer else float(f"{mean:.6g}")
+
+
+def _set_torque(port: PortGuess, roles: Roles) -> None:
+    column, notes = roles.ports["tau"].column, port.notes
+    meaning, facts = column.meaning, column.facts
+    port.wrap = None
+    port.unit = port.unit if port.unit != "counts" else None
+    farthest = max(abs(facts.low), abs(facts.high))
+    if port.unit is None and meaning.quantity == "current":
+        port.unit = "mA" if facts.integer or farthest > _MILLI else "A"
+        notes["unit"] = "CHECK: no unit in the name"
+    elif port.unit is None and not facts.integer:
+        port.unit = "N.m"
+        said = meaning.quantity == "torque"
+        notes["unit"] = f"CHECK: no unit in the name{'' if said else '; or is it a current, in A?'}"
+    if roles.drive.sign < 0:
+        port.sign = -1
+        notes["sign"] = "CHECK: else the motor would gain power from friction"
+    elif roles.drive.sign == 0:
+        notes["sign"] = (
+            "CHECK: the log does not show it; 1 if a positive torque increases theta, else -1"
+        )
+    notes["gear_ratio"] = "CHECK: ratio of the gear if the torque is measured after the gear"
+
+
+def _set_sensor(ports: Mapping[str, PortGuess], roles: Roles) -> None:
+    port, column = ports["tau_e_sensor"], roles.ports["tau_e_sensor"].column
+    port.wrap = None
+    port.unit = port.unit if port.unit not in ("counts", "A", "mA") else None
+    if port.unit is None and not column.facts.integer:
+        port.unit, port.notes["unit"] = "N.m", "CHECK: no unit in the name"
+    deformation = _deformation(ports, roles)
+    if deformation is not None and line(deformation, column.window).correlation <= -_SURE:
+        port.sign, port.notes["sign"] = -1, "opposite to the deformation"
+
+
+def _deformation(ports: Mapping[str, PortGuess], roles: Roles) -> Array | None:
+    """Computes q - theta in the unit of q, or q without theta; None if the gear is unknown."""
+    if "q" not in ports:
+        return None
+    q: Array = ports["q"].sign * roles.ports["q"].column.window
+    if "theta" not in ports:
+        return q
+    ratio = _ratio(ports["theta"], ports["q"])
+    return None if ratio is None else q - ratio * roles.ports["theta"].column.window

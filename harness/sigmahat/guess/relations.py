@@ -1,0 +1,119 @@
+"""Finds relations between columns: copies, derivatives, and the motor equation."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+
+from sigmahat.recording.log import Array
+
+_SMOOTH = 15  # number of samples in the window of a differentiation by polynomials
+_INNER = slice(_SMOOTH // 2, -(_SMOOTH // 2))  # samples with a complete window
+_DERIVATIVE = 0.97  # least correlation of a column with the derivative of another column
+_COPY = 1e-4  # largest relative residual of a column that is a copy in another unit
+_BLOCKS = 8
+
+
+@dataclass(frozen=True)
+class Line:
+    """A fitted line y = offset + slope x."""
+
+    slope: float
+    offset: float
+    correlation: float
+    rest: float  # standard deviation of the residual, relative to y
+
+
+def line(x: Array, y: Array) -> Line:
+    """Fits a line to two columns of equal size; correlation 0 if a column does not vary."""
+    x_0, y_0 = x - x.mean(), y - y.mean()
+    xx, yy, xy = float(x_0 @ x_0), float(y_0 @ y_0), float(x_0 @ y_0)
+    if xx == 0 or yy == 0:
+        return Line(0.0, float(y.mean()), 0.0, 1.0)
+    slope, correlation = xy / xx, xy / np.sqrt(xx * yy)
+    rest = float(np.sqrt(max(1 - correlation**2, 0.0)))
+    return Line(slope, float(y.mean() - slope * x.mean()), correlation, rest)
+
+
+def is_copy(x: Array, y: Array) -> bool:
+    """Returns whether one column is a copy of the other column in another unit."""
+    return line(x, y).rest < _COPY
+
+
+def smooth(x: Array, T: float = 1.0, order: int = 0) -> Array:
+    """Computes a derivative of samples T apart, along the last axis, at the samples _INNER.
+
+    A cubic polynomial is fitted to the samples around each sample (Savitzky and Golay, Analytical
+    Chemistry 36:1627-1639, 1964). The import of scipy.signal would take two seconds.
+    """
+    places = np.arange(_SMOOTH) - _SMOOTH // 2
+    factors = np.linalg.pinv(np.vander(places, 4, increasing=True))[order]
+    values: Array = sliding_window_view(x, _SMOOTH, axis=-1) @ factors
+    return values * (math.factorial(order) / T**order)
+
+
+def derivatives(columns: Sequence[Array], T: float) -> Sequence[bool]:
+    """Returns for each column whether it is a derivative of another column; samples T apart."""
+    if not columns or len(columns[0]) < 4 * _SMOOTH:
+        return [False] * len(columns)
+    x = np.array(columns)
+    both = [smooth(x, T, order) for order in (1, 0)]
+    for each in both:
+        each -= each.mean(axis=1, keepdims=True)
+        each /= np.linalg.norm(each, axis=1, keepdims=True) + 1e-300
+    correlation = both[1] @ both[0].T
+    np.fill_diagonal(correlation, 0.0)
+    found: list[bool] = (np.abs(correlation) > _DERIVATIVE).any(axis=1).tolist()
+    return found
+
+
+def scale_of_derivative(x: Array, v: Array, T: float) -> float | None:
+    """Returns the ratio of v to the derivative of x; None if v is not the derivative of x."""
+    if len(x) < 4 * _SMOOTH:
+        return None
+    fitted = line(smooth(x, T, 1), smooth(v))
+    return fitted.slope if fitted.correlation**2 > _DERIVATIVE**2 else None
+
+
+@dataclass(frozen=True)
+class Drive:
+    """Relation between a torque and the motion of two positions, by the motor equation (3)."""
+
+    explained: float  # explained fraction of the variance of the torque [1]
+    sign: int  # 1 if the torque drives the motion, -1 if its sign is reversed, 0: not sure
+
+
+def drive(x: Array, y: Array, tau: Array, T: float) -> Drive:
+    """Relates a torque to two positions, whatever their units are; all [size: samples].
+
+    tau = B x'' + D x' + C sign(x') + K (x - y) for a linear spring, with only the part of y that is
+    not proportional to x. The equation contains the acceleration of the motor, not of the link.
+    Therefore the equation explains the torque better if x is the motor position. The sign of the
+    torque follows from friction, which dissipates power of the motor on average. If a hand moves
+    the link, the deformation follows the velocity, and `sign` is 0.
+    """
+    if len(x) < 8 * _SMOOTH or not np.ptp(x) or not np.ptp(tau):
+        return Drive(0.0, 0)
+    fitted = line(x, y)
+    behind = smooth(x - (y - fitted.offset) / fitted.slope) if fitted.slope else 0 * x[_INNER]
+    velocity = smooth(x, T, 1)
+    coulomb = np.tanh(velocity / (0.05 * np.abs(velocity).max() + 1e-300))
+    position, one = x[_INNER] - x.mean(), np.ones_like(velocity)
+    parts = np.column_stack([smooth(x, T, 2), velocity, coulomb, position, behind, one])
+    parts /= np.linalg.norm(parts, axis=0) + 1e-300
+    torque = smooth(tau)
+    factors = np.linalg.lstsq(parts, torque, rcond=1e-10)[0]
+    spread = float(np.var(torque))
+    explained = 1 - float(np.var(torque - parts @ factors)) / spread if spread else 0.0
+    if _sign(-behind * velocity) > 0:
+        return Drive(explained, 0)
+    return Drive(explained, _sign((torque - torque.mean()) * velocity))
+
+
+def _sign(power: Array) -> int:
+    """Returns the sign of the mean; 0 if means of time blocks show no significant sign."""
+    means = np.array([block.mean() for block in np.array_split(power, _BLOCKS)])
+    error = float(means.std(ddof=1)) / np.sqrt(len(means))
+    return int(np.sign(means.mean())) if abs(means.mean()) > 3 * error else 0

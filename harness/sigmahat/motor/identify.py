@@ -1,0 +1,253 @@
+"""The job of `sigmahat identify`: motor data and settings of the estimator, off line from a log.
+
+The results are B, D_theta and Coulomb friction with 95 % intervals, and with a torque sensor the
+torque constant. Further results are noise, filter settings, and orders of the polynomial.
+"""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from sigmahat.fmi.instance import Fmu, Slave, Value, installed
+from sigmahat.motor.coherence import coherent_range, is_hidden
+from sigmahat.motor.equation import Signals, set_point_moves, shortest, signals_of
+from sigmahat.motor.motor_fit import KnownInertia, MotorFit, fit_motor
+from sigmahat.motor.noise import TorqueNoise, count, is_only_noise, low_pass
+from sigmahat.motor.quantities import WIDE, Identified, Quantity
+from sigmahat.motor.spring import (
+    change_of_spring,
+    knees,
+    plain_equations,
+    with_two_springs,
+)
+from sigmahat.recording.configuration import Configuration
+from sigmahat.recording.log import Array, Log, LogError
+from sigmahat.recording.replay import parameters, play
+from sigmahat.recording.resampling import Samples, sample, stretches
+
+_LONGEST = 600.0  # [s] of a log that are used
+_FEWEST = 1000  # least number of samples kept from the longest stretch of a slow motion
+_RESOLVED = 0.07
+"""Largest bandwidth of the estimator, in sampling frequencies. For joints that are sampled at 250
+Hz, other values reduce the coverage of the intervals. A value of 0.05 is too slow. With 0.15,
+signals are not linear between samples."""
+_V_A = tuple(10.0**e for e in np.arange(5.0, 13.1, 0.5))
+_MATTERS = 0.05  # smallest relevant error of zero, relative to the range of the deformation
+_V_A_TICKS = 10000
+_NO_TORQUE = (
+    "the torque of the motor is only noise: such a log does not show its inertia and friction, and "
+    "they have to be known for the stiffness; record with the motor on"
+)
+_CHANGES = (
+    "the stiffness changes after {t:.4g} s of the log: identified with one spring before, and "
+    "another one after it"
+)
+_CONTRADICTED = (
+    "the log shows B = {found:.3g} kg.m2 where motor.B is {given:.3g}, known to {std:.3g} %: it "
+    "is not written, as the torque may have another scale than the configuration says; check "
+    "torque_constant, unit and gear_ratio of tau, and motor.gamma, or remove motor.B"
+)
+_HIDDEN = (
+    "the deformation is proportional to the acceleration of the motor, but for the rounding of the "
+    "encoders: the log cannot tell the inertia of the motor from the inertia of the load; record "
+    "more frequencies, or give motor.B and prior.B"
+)
+_SLOWEST = 0.25  # largest sample period [s]: the duration of a block of errors
+_V_A_HIGHEST = 0.1  # highest low pass of the reference velocity, in sampling frequencies
+
+
+def _unusable(samples: Samples, needed: float) -> str:
+    """Explains why no part of a log is usable; a part must last at least `needed` [s]."""
+    if samples.T > _SLOWEST:
+        return (
+            f"samples {samples.T:g} s apart do not show the motion of a joint, expected at most "
+            f"{_SLOWEST} s; check time.unit and samplePeriod"
+        )
+    duration = len(samples.values) * samples.T
+    if duration < needed:
+        least = f"at least {needed:.3g} s with samples {samples.T:g} s apart"
+        return f"the log is {duration:.3g} s long, expected {least}"
+    gaps, _ = stretches(np.isnan(samples.values).any(axis=1))
+    return (
+        f"expected a stretch of {needed:.3g} s without a gap, got {len(gaps)} gaps in "
+        f"{duration:.4g} s; to interpolate over short ones, set time.longest_gap [s]"
+    )
+
+
+def identify(log: Log, configuration: Configuration, torque_constant: bool = False) -> Identified:
+    """Identifies the motor of a log.
+
+    With torque_constant, the torque constant K_t is identified too. In this case tau must be a
+    current, and the torque of the sensor is taken as exact.
+
+    Raises LogError for a log and configuration that do not fit, or a log without a stretch that is
+    long enough.
+    """
+    _check(configuration, torque_constant)
+    fmu = installed("StiffnessEstimator")
+    start = parameters(fmu, configuration)
+    every = fmu.parameters(start)
+    samples = _beginning(sample(log, configuration, float(every["samplePeriod"])))
+    T, gamma = samples.T, float(every["motor.gamma"])
+    pieces = list(signals_of(samples, every, sensor=torque_constant)) if T <= _SLOWEST else []
+    if not pieces:
+        raise LogError(f"{log.path}: {_unusable(samples, shortest(T) * T)}")
+    longest = max(pieces, key=lambda piece: len(piece.theta))
+    noise = TorqueNoise.of(longest.tau, longest.theta, every, T)
+    bandwidth = noise.bandwidth
+    symmetric = bool(start.get("rls.symmetric", False))
+    coherent = math.inf if torque_constant else coherent_range(longest, gamma, noise)
+    apart = _apart(pieces, count(every))
+    h = apart * T
+    thinned = [each.with_acting_torque()[::apart] for each in pieces]
+    inertia = _known_inertia(every, configuration)
+    f_0 = min(replace(noise, T=h).bandwidth, coherent)
+    change, hidden = None, False
+    if not torque_constant:
+        plain = plain_equations(thinned, h, gamma, f_0)
+        change = change_of_spring(plain, thinned)
+        rounding = sum(count(every, encoder) ** 2 / 12 for encoder in ("theta", "q"))
+        hidden = is_hidden(plain, f_0, h, rounding, known=inertia is not None)
+    springs = thinned if change is None else with_two_springs(thinned, change)
+    motor = fit_motor(springs, h, gamma, symmetric, f_0, inertia)
+    quantities = dict(motor.quantities)
+    no_torque = all(is_only_noise(piece.tau) for piece in pieces)
+    changed = None if change is None else change * h
+    if no_torque or hidden:
+        quantities = {
+            name: Quantity(math.nan, math.inf, each.unit, determined=False)
+            for name, each in quantities.items()
+        }
+    if quantities["B"].determined:  # the first bandwidth was computed with the configured B
+        bandwidth = replace(noise, inertia=quantities["B"].value * abs(gamma)).bandwidth
+    if torque_constant and (nominal := configuration.ports["tau"].torque_constant) is not None:
+        quantities["torque_constant"] = motor.torque_constant(nominal)
+    spring = motor.spring if math.isfinite(motor.spring) else 0.0
+    center = _center(quantities.get("zero"), pieces)
+    middle, set_point = _set_points(pieces, has_effect=motor.polynomial.m > 1)
+    return Identified(
+        quantities=quantities,
+        symmetric=motor.polynomial.symmetric,
+        n=motor.polynomial.n,
+        m=motor.polynomial.m,
+        tau_variance=noise.torque,
+        theta_variance=noise.position,
+        bandwidth=2 * math.pi * min(bandwidth, coherent, _RESOLVED / samples.T),
+        coherent=coherent,
+        V_a=_best_V_a(fmu, samples, start, longest, noise.bandwidth),
+        phi=max(float(np.max(np.abs(piece.phi - center))) for piece in pieces),
+        zero=center,
+        knees=()
+        if no_torque or hidden or change is not None
+        else knees(thinned, h, gamma, motor.polynomial, center),
+        set_point=set_point,
+        set_point_center=middle,
+        set_point_moves=set_point_moves(pieces),
+        torque=0.0
+        if no_torque
+        else max(spring, *(abs(gamma) * float(np.max(np.abs(each.tau))) for each in pieces)),
+        B=float(every["motor.B"]),
+        D_theta=float(every["motor.D_theta"]),
+        notes=[*samples.notes, *_notes(changed, motor, inertia, no_torque, hidden)],
+    )
+
+
+def _notes(
+    changed: float | None,
+    motor: MotorFit,
+    inertia: KnownInertia | None,
+    no_torque: bool,
+    hidden: bool,
+) -> Iterator[str]:
+    """Yields notes on problems of the log; changed: time at which the stiffness changes [s]."""
+    if changed is not None:
+        yield _CHANGES.format(t=changed)
+    if no_torque or hidden:
+        yield _NO_TORQUE if no_torque else _HIDDEN
+    elif motor.contradicted and inertia is not None:
+        found, std = motor.quantities["B"].value, 100 * inertia.std
+        yield _CONTRADICTED.format(found=found, given=inertia.value, std=std)
+
+
+def _set_points(pieces: Sequence[Signals], has_effect: bool) -> tuple[float, float]:
+    """Computes the center of the set-points, and the largest distance from the center. The center
+    is 0 if the set-points have no effect."""
+    ends = [float(end(piece.set_point)) for piece in pieces for end in (np.min, np.max)]
+    center = (min(ends) + max(ends)) / 2 if has_effect else 0.0
+    return center, max(abs(end - center) for end in ends)
+
+
+def _apart(pieces: Sequence[Signals], count: float) -> int:
+    """Returns the distance of the samples for the fit: 1 if the motor moves by at least one count
+    [rad] per sample (RMS), else the number of samples for two counts.
+
+    The rounding errors must be independent from one sample to the next. In slow motion, adjacent
+    samples have equal rounding errors.
+    """
+    moved = math.sqrt(np.mean(np.concatenate([np.diff(each.theta) for each in pieces]) ** 2))
+    if moved >= count or moved == 0:
+        return 1
+    longest = max(len(each.theta) for each in pieces)
+    return max(1, min(math.ceil(2 * count / moved), longest // _FEWEST))
+
+
+def _known_inertia(every: Mapping[str, Value], configuration: Configuration) -> KnownInertia | None:
+    """Returns the configured B, unless its prior is the wide prior for an unknown B."""
+    std = float(every["prior.B"])
+    given = "motor.B" in configuration.parameters
+    return KnownInertia(float(every["motor.B"]), std) if given and 0 < std < WIDE else None
+
+
+def _center(zero: Quantity | None, pieces: Sequence[Signals]) -> float:
+    """Returns the zero of the deformation if its distance from 0 is significant; else 0."""
+    if zero is None or not zero.determined:
+        return 0.0
+    covered = max(float(np.ptp(piece.phi)) for piece in pieces)
+    is_wrong = abs(zero.value) > max(zero.half_width, _MATTERS * covered)
+    return zero.value if is_wrong else 0.0
+
+
+def _check(configuration: Configuration, torque_constant: bool) -> None:
+    """Raises LogError if a port is missing, or if tau must be a current and is not."""
+    for name in ("theta", "q", "tau", *(["tau_e_sensor"] if torque_constant else [])):
+        if name not in configuration.ports:
+            why = "; a torque constant needs a measured torque" if "sensor" in name else ""
+            raise LogError(f"{configuration.path}: identify needs [ports.{name}]{why}; add it")
+    if torque_constant and configuration.ports["tau"].torque_constant is None:
+        raise LogError(
+            f"{configuration.path}: expected [ports.tau] in A with a torque_constant; "
+            "add both, or omit --torque-constant"
+        )
+
+
+def _beginning(samples: Samples) -> Samples:
+    """Returns the first 600 s of a log, which are used for the identification."""
+    if len(samples.values) * samples.T <= _LONGEST:
+        return samples
+    return replace(
+        samples,
+        values=samples.values[: round(_LONGEST / samples.T)],
+        notes=[*samples.notes, f"used the first {_LONGEST:g} s"],
+    )
+
+
+def _best_V_a(
+    fmu: Fmu, samples: Samples, start: Mapping[str, Value], piece: Signals, f_0: float
+) -> float:
+    """Finds the V_a for which the filtered velocity is nearest to a zero-phase reference."""
+    theta: Array = piece.theta[:_V_A_TICKS]
+    wide = min(2.5 * f_0, _V_A_HIGHEST / samples.T)
+    reference = np.gradient(low_pass(theta, wide, samples.T), samples.T)
+    settled = slice(len(theta) // 10, -len(theta) // 10)
+    only = Samples(samples.T, ["theta"], theta[:, None])
+    errors: dict[float, float] = {}
+    for V_a in _V_A:
+        with Slave(fmu, "filter") as slave:
+            filtered = {"method": "Paper2011", "filter.V_a": V_a, "modality": "Residual"}
+            slave.initialize({**start, **filtered})
+            (outputs,) = play(slave, only, len(theta))
+            difference = outputs["theta_dot"][settled] - reference[settled]
+            errors[V_a] = float(np.mean(difference**2))
+    return min(errors, key=errors.__getitem__)

@@ -1,0 +1,238 @@
+"""Computes motor data with 95 % intervals, from several fits of the motor equation."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from sigmahat.motor import equation
+from sigmahat.motor.equation import MOTOR, Fit, Form, Signals, Stribeck
+from sigmahat.motor.quantities import Quantity
+from sigmahat.motor.spring import Spring
+from sigmahat.recording.log import Array
+
+_UNITS = {"B": "kg.m2", "D_theta": "N.m.s/rad", "tau_coulomb": "N.m"}
+_RELATIVE = 0.1  # largest half width of a determined value, relative to the value
+_NEGLIGIBLE = 0.005  # largest half width of the Coulomb friction, relative to the torque
+_POWERS = 4
+"""Value of rls.n for every joint. FilteredRegression adds powers or knees if necessary. With 6, the
+interval of the stiffness is a quarter wider; with 3, the interval contains fewer true curves."""
+_SAMPLING = {"B": 0.015, "tau_coulomb": 0.015, "D_theta": 0.001}
+"""Relative errors without noise, because reversals happen between samples of period 1 ms."""
+_OF_COVERED = 0.05  # largest half width of a known zero, relative to the range of the deformation
+_STRIBECK = tuple(
+    Stribeck(v, delta) for v in (0.01, 0.02, 0.04, 0.08, 0.16, 0.32) for delta in (1.0, 2.0)
+)
+_ENDS = (0.0, -1.96, 1.96)  # mean and interval ends of a known inertia, in standard deviations
+_FAR = 5.0  # largest plausible error of a known B, in standard deviations
+_ANOTHER = 0.5  # smallest relative error of B that suggests a wrong scale of the torque
+_N, _M = 4, 4  # highest orders of the polynomial that are tried
+
+
+@dataclass(frozen=True)
+class KnownInertia:
+    """The inertia B from the configuration, with its uncertainty."""
+
+    value: float  # [kg.m2]
+    std: float  # standard deviation of the relative error of B, > 0
+
+    def contradicts(self, found: Quantity) -> bool:
+        """Returns whether the error of B is so large that the scale of the torque may be wrong. A
+        wrong torque constant or gear ratio changes B and the stiffness by the same factor.
+        """
+        most = self.value * max(_FAR * self.std, _ANOTHER)
+        return abs(found.value - self.value) - found.half_width > most
+
+
+@dataclass(frozen=True)
+class MotorFit:
+    """Fit of the motor equation to the stretches of a log."""
+
+    quantities: dict[str, Quantity]
+    """B, D_theta and tau_coulomb, and the zero of the deformation if it exists."""
+    gain: tuple[float, float]  # gain of a measured torque, half of its 95 % interval
+    contradicted: bool
+    """Whether the B of the log contradicts the known B. In this case B counts as not determined,
+    and the other quantities are identified with the known B."""
+    polynomial: Form  # orders and symmetry of the polynomial for the estimator
+    spring: float  # largest torque of the spring in the log [N.m]
+
+    def torque_constant(self, nominal: float) -> Quantity:
+        """Computes K_t from the gain of the sensor torque relative to nominal K_t times current."""
+        value, half_width = self.gain
+        return _quantity(value * nominal, half_width * nominal, "N.m/A", 0.0)
+
+
+def fit_motor(
+    pieces: Sequence[Signals],
+    T: float,
+    gamma: float,
+    symmetric: bool,
+    f_0: float,
+    inertia: KnownInertia | None,
+) -> MotorFit:
+    """Fits the motor equation, and chooses the orders of the polynomial.
+
+    T        time between samples [s]
+    gamma    gear ratio
+    f_0      low pass of the equations [Hz]
+    inertia  known B: if the log does not determine B, the other quantities are identified with
+             the known value
+    """
+    longest = max(pieces, key=lambda piece: len(piece.theta))
+    m_most = _M if np.ptp(longest.set_point) > 0 else 1
+    form = Form(f_0, min(2.5 * f_0, equation.WIDEST / T), n=_N, m=m_most)
+    without_sensor = [replace(piece, tau_e=None) for piece in pieces]
+    form, polynomial = _with_spring(without_sensor, T, gamma, form, symmetric)
+    torque = float(np.std(np.concatenate([piece.tau for piece in pieces])))
+    fits, with_inertia = _variants(pieces, T, gamma, form, inertia)
+    quantities = {name: _motor_quantity(name, fits, torque) for name in MOTOR}
+    contradicted = inertia is not None and inertia.contradicts(quantities["B"])
+    if contradicted:
+        quantities["B"] = replace(quantities["B"], determined=False)
+    if with_inertia is not None and not quantities["B"].determined:
+        fits = with_inertia
+        quantities |= {name: _motor_quantity(name, fits, torque) for name in MOTOR[1:]}
+    spring = Spring(form, fits.first, pieces)
+    if "gain" not in fits.first.value:
+        quantities["zero"] = _zero(spring, fits.others, gamma)
+    gain = fits.first.value.get("gain", math.nan), _half_width("gain", fits)
+    return MotorFit(quantities, gain, contradicted, polynomial, spring.largest(abs(gamma)))
+
+
+def _with_spring(
+    pieces: Sequence[Signals], T: float, gamma: float, form: Form, symmetric: bool
+) -> tuple[Form, Form]:
+    """Chooses the polynomial with the best predictions in a cross-validation, up to given orders.
+
+    The first form has only odd powers unless all powers are significantly better: in slow motion, a
+    more general spring leaves less information about friction.
+
+    The second form is for the estimator, and always has _POWERS powers. With fewer powers, the
+    interval of the stiffness would be too narrow.
+    """
+
+    def chosen(form: Form) -> tuple[Form, Array]:
+        return equation.choose(equation.equations(pieces, T, gamma, form), form)
+
+    odd, errors = chosen(form)
+    if symmetric:
+        return odd, replace(odd, n=_POWERS)
+    every, errors_of_all = chosen(form.with_all_powers())
+    best = every if equation.is_more(np.log(errors / errors_of_all)) else odd
+    return best, replace(every, n=_POWERS, m=best.m)
+
+
+@dataclass(frozen=True)
+class Variants:
+    """A fit of the motor equation, and fits with other assumptions about filters and friction.
+
+    The results differ by more than chance if rounding is relevant, or if the friction is of another
+    form.
+    """
+
+    first: Fit
+    others: Sequence[Fit]  # fits with other filters, or ends of a known inertia
+    frictions: Sequence[Fit]  # fits with other forms of friction
+
+
+def _frictions(plain: Form) -> list[Form]:
+    """Returns all forms of the equation with other models of friction."""
+    load = replace(plain, load_friction=True)
+    return [
+        replace(plain, coulomb_velocity=equation.COULOMB_VELOCITY / 4),
+        replace(plain, coulomb_velocity=equation.COULOMB_VELOCITY * 2),
+        load,
+        *(replace(each, stribeck=(one,)) for each in (plain, load) for one in _STRIBECK),
+    ]
+
+
+def _with_all_columns(form: Form) -> Form:
+    return replace(form, load_friction=True, stribeck=_STRIBECK, delay=True)
+
+
+def _variants(
+    pieces: Sequence[Signals], T: float, gamma: float, form: Form, inertia: KnownInertia | None
+) -> tuple[Variants, Variants | None]:
+    """Fits the equation with all forms of friction, and chooses another form only if significant.
+
+    All fits include a delay of the torque, which looks like friction if a hand moves the link.
+
+    The second result has the fits with the known B, if a known B exists.
+    """
+    sensor = pieces[0].tau_e is not None
+    widest = _with_all_columns(form)
+    whole, names = equation.equations(pieces, T, gamma, widest), set(widest.names(sensor))
+
+    def fits_of(each: Form) -> list[Fit]:
+        """Fits with an unknown B, then with the known B and with both ends of its interval."""
+        if _with_all_columns(each) == widest:  # neither a filter nor v_s differs
+            system = whole.without(names.difference(each.names(sensor)))
+        else:
+            system = equation.equations(pieces, T, gamma, each)
+        ends = [] if inertia is None else [inertia.value * (1 + k * inertia.std) for k in _ENDS]
+        return [equation.fit(each) for each in (system, *(system.known("B", B) for B in ends))]
+
+    plain = replace(form, delay=True)
+    every = {each: fits_of(each) for each in (plain, *_frictions(plain))}
+    best = min(every, key=lambda each: np.nan_to_num(every[each][0].error, nan=np.inf))
+    chosen = best if equation.is_worse(every[plain][0], every[best][0]) else plain
+    filters = [
+        fits_of(replace(chosen, wide=min(2 * form.wide, 2 * equation.WIDEST / T))),
+        fits_of(replace(chosen, f_0=0.6 * form.f_0)),
+    ]
+    first = every.pop(chosen)
+    free, *known = (
+        Variants(first[i], [each[i] for each in filters], [each[i] for each in every.values()])
+        for i in range(min(2, len(first)))
+    )
+    if not known:
+        return free, None
+    return free, replace(known[0], others=[*known[0].others, *first[2:]])
+
+
+def _half_width(name: str, fits: Variants) -> float:
+    """Adds half of the interval of the first fit and the largest distance of the other fits.
+
+    A fit with another form of friction counts if its errors are not significantly larger. The
+    distance of such a fit is reduced by half of its interval.
+    """
+    first = fits.first
+    if not math.isfinite(first.value.get(name, math.nan)):
+        return math.inf
+    distances = [abs(other.value[name] - first.value[name]) for other in fits.others]
+    for friction in fits.frictions:
+        distance = abs(friction.value[name] - first.value[name]) - friction.half_width[name]
+        if not equation.is_worse(friction, first):
+            distances.append(max(distance, 0.0))
+    distance = max(distances)
+    return first.half_width[name] + (distance if math.isfinite(distance) else math.inf)
+
+
+def _motor_quantity(name: str, fits: Variants, torque: float) -> Quantity:
+    value = fits.first.value[name]
+    negligible = _NEGLIGIBLE * torque if name == "tau_coulomb" else 0.0
+    half_width = _half_width(name, fits) + _SAMPLING[name] * abs(value)
+    return _quantity(value, half_width, _UNITS[name], negligible)
+
+
+def _quantity(value: float, half_width: float, unit: str, negligible: float) -> Quantity:
+    """negligible  half width below which any value counts as determined, even 0"""
+    determined = value > -negligible and half_width <= max(_RELATIVE * value, negligible)
+    return Quantity(value, half_width, unit, bool(determined))
+
+
+def _zero(spring: Spring, fits: Sequence[Fit], gamma: float) -> Quantity:
+    """Computes the deformation at which spring and constant torque cancel.
+
+    The zero is determined if its interval is short compared with the range of the deformation, and
+    if the stiffness is positive. A negative stiffness means a wrong sign or gear ratio.
+    """
+    value, *others = (replace(spring, fit=each).zero() for each in (spring.fit, *fits))
+    if not all(map(math.isfinite, [value, *others])):
+        return Quantity(math.nan, math.inf, "rad", False)
+    half_width = spring.half_width(value) + max(abs(other - value) for other in others)
+    is_stiff = spring.slope(value) * gamma < 0
+    is_narrow = half_width < _OF_COVERED * spring.covered
+    return Quantity(value, half_width, "rad", bool(is_stiff and is_narrow))

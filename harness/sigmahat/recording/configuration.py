@@ -1,0 +1,239 @@
+"""Reads the configuration of a log: columns for the ports, and parameters of the estimator.
+
+docs/how-to-log.md has an example, and several_joints.py describes the file for several joints. The
+format TOML is easy to read, and tomlkit keeps the comments when identify writes the file.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import Annotated, Any
+
+import tomlkit
+from pydantic import AfterValidator, AllowInfNan, ConfigDict, Strict, TypeAdapter, ValidationError
+from pydantic_core import ErrorDetails, PydanticCustomError
+
+from sigmahat.files import toml_file
+from sigmahat.fmi.instance import Value
+from sigmahat.fmi.unknown_name import unknown
+from sigmahat.recording import several_joints
+from sigmahat.recording.log import LogError
+
+PORTS = {"theta": "rad", "q": "rad", "theta_c": "rad", "tau": "N.m", "tau_e_sensor": "N.m"}
+"""Inputs of StiffnessEstimator and their units."""
+
+FILL_IN = "FILL IN"
+"""Placeholder for an unknown column, and first words of the comments on missing values."""
+NOT_YOURS = "not known: of another robot, until identify finds it or you set it"
+"""Comment of a motor parameter that the user has not set."""
+WIDE_PRIOR = "wide, because it is not known; make it smaller if you know better"
+"""Comment of the prior of a motor parameter that the user has not set."""
+ANOTHER_ROBOT = 1000.0
+"""Prior of unknown motor data: small and large motors differ by this factor."""
+ANY_COULOMB = 1.0
+"""Value of prior.tau_coulomb for unknown friction [N.m]: a large value reduces accuracy little."""
+
+_NEEDED = {"Residual": ("theta", "q", "tau"), "Sensor": ("q", "tau_e_sensor"), "Model": ("q",)}
+"""Ports that a modality needs."""
+
+
+def _not_zero(value: float) -> float:
+    if value == 0:
+        raise PydanticCustomError("zero", "fill in the value from the data sheet of your device")
+    return value
+
+
+def _one(value: float) -> float:
+    if abs(value) != 1:
+        raise PydanticCustomError("expected", "1 or -1")
+    return value
+
+
+# Types of the values in a file; pydantic checks files, but not objects made by Python code.
+Number = Annotated[float, Strict(), AllowInfNan(False)]
+NotZero = Annotated[Number, AfterValidator(_not_zero)]
+Sign = Annotated[Number, AfterValidator(_one)]
+_NO_OTHER_KEYS = ConfigDict(extra="forbid")
+
+
+@dataclass(frozen=True)
+class Port:
+    """A column of a log as an input of the estimator: sign (x - zero) / gear_ratio, in its unit."""
+
+    __pydantic_config__ = _NO_OTHER_KEYS
+
+    column: str = ""  #: Name of the column in the log.
+    value: Number | None = None
+    """Constant value of the port in its unit, instead of a column, as for a locked link."""
+    time: str | None = None
+    """Column with the times of this port, if they differ from [time]; in the unit of [time]."""
+    unit: str | None = None  #: Unit of the column; by default, the unit of the port.
+    sign: Sign = 1.0  #: 1 or -1.
+    zero: Number = 0.0  #: Value of the column at the zero of the port, in the unit of the column.
+    gear_ratio: NotZero = 1.0
+    """For an encoder on the motor's shaft, or a torque measured after the gear."""
+    counts_per_turn: NotZero | None = None  #: For the unit counts.
+    torque_constant: NotZero | None = None  #: For a current [N.m/A].
+    mm_per_turn: NotZero | None = None
+    """For a length: travel per turn of the motor. If not given, the port takes the number of mm."""
+    scale: NotZero | None = None
+    """Instead of a unit: value of the port, in its unit, per 1 in the column."""
+    wrap: NotZero | None = None
+    """Period after which the values start again, in the unit of the column."""
+    delay: Number = 0.0
+    """Delay of the column relative to other columns [s]: samples are moved back by this time."""
+
+
+@dataclass(frozen=True)
+class Time:
+    """The times of the samples in a log."""
+
+    __pydantic_config__ = _NO_OTHER_KEYS
+
+    column: str | None = None
+    """Name of the column in the log; if not given, rows are samplePeriod apart."""
+    unit: str = "s"  #: Unit of the column.
+    longest_gap: NotZero | None = None
+    """Longest time between two samples over which values are interpolated [s]."""
+
+
+@dataclass(frozen=True)
+class Configuration:
+    """The contents of a configuration file."""
+
+    path: Path  #: The file.
+    time: Time  #: When the samples were taken.
+    ports: Mapping[str, Port]  #: Ports by input of `StiffnessEstimator`.
+    parameters: Mapping[str, Value]  #: Start values of `StiffnessEstimator`, by its names.
+    joint: str = ""  #: Name of the joint in a file of several joints.
+
+    def need_ports(self, modality: str) -> None:
+        """Raises LogError if a port is missing that the modality needs."""
+        for name in _NEEDED.get(modality, ()):
+            if name not in self.ports:
+                raise LogError(
+                    f"{self.path}: modality {modality} needs [ports.{name}]; add it, "
+                    "or choose another modality in [parameters]"
+                )
+
+
+def _port_name(name: str) -> str:
+    if name not in PORTS:
+        raise PydanticCustomError("unknown", "{text}", {"text": unknown("port", name, PORTS)})
+    return name
+
+
+@dataclass(frozen=True)
+class _File:
+    """The sections of a configuration file."""
+
+    __pydantic_config__ = _NO_OTHER_KEYS
+
+    ports: dict[Annotated[str, AfterValidator(_port_name)], Port]
+    time: Time = field(default_factory=Time)
+    parameters: dict[str, Any] = field(default_factory=dict)
+    identified: Any = None  # results of identify, for people to read
+
+
+def read_configuration(path: str | Path, joint: str = "") -> Configuration:
+    """Reads and checks a file; from a file of several joints, the configuration of one joint.
+
+    Raises LogError, which names the place of the error in the file.
+    """
+    path = Path(path)
+    return checked_configuration(read_document(path), path, joint)
+
+
+def checked_configuration(
+    document: tomlkit.TOMLDocument, path: Path, joint: str = ""
+) -> Configuration:
+    """Checks the configuration in a document, which need not be written to the file yet.
+
+    Raises LogError, which names the place of the error in the document.
+    """
+    known = joints_of(document, path)
+    if joint not in known:
+        what = f"expected the name of one of its joints ({', '.join(known)})"
+        if joint:
+            one = f"it is the configuration of one joint, expected no name, got {joint!r}"
+            what = one if known == [""] else unknown("joint", joint, known)
+        raise LogError(f"{path}: {what}")
+    own = several_joints.of_joint(document, joint)
+    try:
+        file = TypeAdapter(_File).validate_python(own.unwrap())
+    except ValidationError as error:
+        # A misspelt key is the reason why another key is missing.
+        errors = sorted(error.errors(), key=lambda each: each["type"] != _MISSPELT)
+        raise LogError(f"{path}: {_explain(errors[0])}") from error
+    if not file.ports:
+        raise LogError(f"{path}: {_NO_PORTS}")
+    for name, port in file.ports.items():
+        if (port.value is None) == (not port.column):
+            what = "has no column" if port.value is None else "has a column and a value"
+            raise LogError(
+                f"{path}: [ports.{name}] {what}; name a column of the log, or set value "
+                "if the signal is constant"
+            )
+    _refuse_repeated(file, path)
+    values = dict(toml_file.dotted(file.parameters))
+    return Configuration(path, file.time, file.ports, values, joint)
+
+
+def _refuse_repeated(file: _File, path: Path) -> None:
+    """Raises LogError if a column is used for two ports, or for a port and for the time.
+
+    Only the port tau_e_sensor may share a column, as for the motor of a compliant test bench.
+    """
+    used = {file.time.column: "time"}
+    for name, port in file.ports.items():
+        if port.column in ("", FILL_IN) or name == "tau_e_sensor":
+            continue
+        if port.column in used:
+            raise LogError(
+                f"{path}: [{used[port.column]}] and [ports.{name}] both use the column "
+                f"{port.column!r}; name another column for one of them"
+            )
+        used[port.column] = f"ports.{name}"
+
+
+def joints_of(document: tomlkit.TOMLDocument, path: Path) -> list[str]:
+    """Returns the names of the joints, [""] for one joint. Raises LogError for a wrong name."""
+    try:
+        return several_joints.names(document)
+    except ValueError as error:
+        raise LogError(f"{path}: {error}") from error
+
+
+def read_document(path: Path) -> tomlkit.TOMLDocument:
+    """Reads a TOML file with its comments. Raises LogError if the file is missing or not TOML."""
+    try:
+        return toml_file.read(path)
+    except OSError as error:
+        hint = "write one with `sigmahat init LOG`, or name another file"
+        raise LogError(f"{path}: {error.strerror}; {hint}") from error
+    except ValueError as error:
+        raise LogError(f"{path}: not TOML ({error})") from error
+
+
+_NO_PORTS = "no [ports.*]; `sigmahat init LOG` writes a file to start from"
+_MISSPELT = "unexpected_keyword_argument"
+_KINDS = {"string_type": "text", "float_type": "a number", "finite_number": "a finite number"}
+
+
+def _explain(error: ErrorDetails) -> str:
+    """Describes an error in a configuration file: its place and the expected value."""
+    what, where = error["type"], ".".join(map(str, error["loc"]))
+    section, _, key = where.rpartition(".")
+    if what == _MISSPELT:
+        kind = Port if "." in section else Time if section else _File
+        place = f"key in [{section}]" if section else "section"
+        return unknown(place, key, [each.name for each in fields(kind)])
+    if what == "missing":
+        return f"[{section}] has no {key}; name a column of the log" if section else _NO_PORTS
+    if what == "unknown":
+        return error["msg"]
+    if what == "zero":
+        return f"{where} is 0; {error['msg']}"
+    table = f"a table [{where}]"
+    expected = _KINDS.get(what, table if what in ("dict_type", "dataclass_type") else error["msg"])
+    return f"{where}: expected {expected}, got {error['input']!r}"

@@ -1,0 +1,208 @@
+"""Reads MAT files of MATLAB (v5 to v7.3) and HDF5 files.
+
+A vector becomes one column. A matrix becomes columns "x[0]", "x[1]" along its longer side. In a
+structure or group, the path is part of the name of the column: "joint.theta".
+
+The elements of a MAT file of version 5 to 7 are checked before scipy reads the file. The reason is
+that scipy unpacks variables of any size, and uses the kind of an element as an index. After a
+header of 128 bytes, each variable has a tag of two integers, kind and number of bytes, and data.
+The data of a variable are a sequence of elements, again with tags.
+"""
+
+import struct
+import zlib
+from collections.abc import Iterator
+from contextlib import suppress
+from itertools import chain
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sigmahat.recording.log import LogError, LogInMemory, check_bytes, check_columns, check_numbers
+
+_MATRIX, _COMPRESSED = 14, 15
+_KINDS = {*range(1, 8), 9, 12, 13, _MATRIX, 16, 17, 18}  # numbers, matrices, text
+_HEAD = 128  # bytes
+_PIECE = 1 << 16  # bytes of the file that are unpacked at a time
+_MOST = 300_000_000  # bytes
+_MOST_OF_PARTS = 80_000_000  # limit for structures and cells: 8 bytes can need 100
+_MOST_ELEMENTS = 1_000_000
+_NUMBERS = {"double", "single", "logical"} | {
+    f"{u}int{n}" for u in ("", "u") for n in (8, 16, 32, 64)
+}
+_MOST_PER_BYTE = 8  # bytes without compression per byte of the file
+
+Buffer = bytes | bytearray
+
+
+def check_packed(path: Path) -> None:
+    """Raises LogError for a file that is far larger without compression, or has unknown elements.
+
+    Any other damage of the file is found by scipy.
+    """
+    size = path.stat().st_size
+    most = max(_MOST if _is_plain(path) else _MOST_OF_PARTS, _MOST_PER_BYTE * size)
+    unpacked = elements = 0
+    with path.open("rb") as file:
+        head = file.read(_HEAD)
+        tag = struct.Struct(">II" if head[126:128] == b"MI" else "<II")
+        while len(begin := file.read(tag.size)) == tag.size:
+            kind, length = tag.unpack(begin)
+            variable: Buffer = file.read(min(length, size))
+            if kind == _COMPRESSED:
+                variable = _unpacked(variable, most - unpacked)
+                unpacked += len(variable)
+            if unpacked > most:
+                raise LogError(
+                    f"{path}: expected at most {most / 1e6:.0f} MB of data in {size / 1e6:.3g} MB, "
+                    "got more; save it without compression (-v6), or in parts"
+                )
+            for found in _kinds(variable, tag):
+                elements += 1
+                if found not in _KINDS:
+                    raise LogError(
+                        f"{path}: damaged MAT file (element of unknown type {found}); save it again"
+                    )
+                if elements > _MOST_ELEMENTS:
+                    raise LogError(
+                        f"{path}: expected at most {_MOST_ELEMENTS} cells and fields, got more; "
+                        "save the columns as vectors"
+                    )
+
+
+def _unpacked(packed: Buffer, most: int) -> Buffer:
+    """Unpacks bytes up to the first damage, or until their number is larger than `most`."""
+    unpack, found = zlib.decompressobj(), bytearray()
+    with suppress(zlib.error):
+        for first in range(0, len(packed), _PIECE):
+            found += unpack.decompress(packed[first : first + _PIECE])
+            if len(found) > most:
+                break
+    return found
+
+
+def _kinds(variable: Buffer, tag: struct.Struct) -> Iterator[int]:
+    """Yields the kinds of the elements of a variable in a MAT file."""
+    at = 0
+    while at + tag.size <= len(variable):
+        kind, length = tag.unpack_from(variable, at)
+        at += tag.size
+        if kind >> 16:  # up to four bytes in the tag itself
+            kind &= 0xFFFF
+        elif kind != _MATRIX:  # after the tag of a matrix, the tags of its elements follow
+            at += -(-length // 8) * 8
+        yield kind
+
+
+def _is_plain(path: Path) -> bool:
+    """Returns whether all variables are arrays of numbers, which need little memory per byte."""
+    import scipy.io
+
+    try:
+        return all(kind in _NUMBERS for _, _, kind in scipy.io.whosmat(path))
+    except Exception:  # any: as for loadmat
+        return False
+
+
+_MOST_COLUMNS = 256  # limit of one matrix; a larger matrix is an image, not a log
+_DEEPEST = 32  # largest number of nested groups of HDF5
+
+Named = Iterator[tuple[str, NDArray[np.generic]]]
+
+
+def read_mat(path: Path) -> LogInMemory:
+    """Reads a MAT file of version 5 to 7. Raises LogError for damage, or without any numbers."""
+    import scipy.io
+
+    check_packed(path)
+    try:
+        variables = scipy.io.loadmat(path, struct_as_record=False)
+    except Exception as error:  # any: for a damaged file scipy raises many kinds
+        raise LogError(f"{path}: damaged MAT file ({error}); save it again") from error
+    own = (_fields(path, *each) for each in variables.items() if not each[0].startswith("__"))
+    return _log(path, chain.from_iterable(own))
+
+
+def _fields(path: Path, name: str, value: Any) -> Named:
+    fields = getattr(value, "_fieldnames", None)
+    if fields is not None:
+        for field in fields:
+            yield from _fields(path, f"{name}.{field}", getattr(value, field))
+    elif isinstance(value, np.ndarray) and value.dtype == object and value.size == 1:
+        yield from _fields(path, name, value.item())
+    elif isinstance(value, np.ndarray):
+        yield from _columns(path, name, value)
+
+
+def read_hdf5(path: Path) -> LogInMemory:
+    """Reads an HDF5 file, or a MAT file of version 7.3. Raises LogError as read_mat does."""
+    import h5py
+
+    def walk(group: h5py.Group, above: str, depth: int = 0) -> Named:
+        if depth > _DEEPEST:
+            raise LogError(f"{path}: expected at most {_DEEPEST} levels of groups, got more")
+        for name in group:
+            if name.startswith("#"):  # the contents of cells, in files of MATLAB
+                continue
+            link = group.get(name, getlink=True)
+            if isinstance(link, h5py.ExternalLink):
+                raise _elsewhere(path, f"{above}{name}", link.filename)
+            item = group.get(name)
+            if isinstance(item, h5py.Group):
+                yield from walk(item, f"{above}{name}.", depth + 1)
+            elif not isinstance(item, h5py.Dataset) or item.shape is None:
+                continue  # a link to nothing, a type, or no values
+            elif item.is_virtual or item.external:
+                others = item.virtual_sources() if item.is_virtual else item.external
+                raise _elsewhere(path, f"{above}{name}", str(others[0][0 if item.external else 1]))
+            elif item.dtype.names and item.ndim == 1:
+                check_bytes(path, item.size * item.dtype.itemsize)
+                for field in item.dtype.names:
+                    yield from _columns(path, f"{above}{name}.{field}", item[field])
+            else:
+                yield from _columns(path, f"{above}{name}", item)
+
+    try:
+        with h5py.File(path, "r") as file:
+            return _log(path, walk(file, ""))
+    except LogError:
+        raise
+    except (OSError, RuntimeError, KeyError, ValueError, TypeError) as error:
+        raise LogError(f"{path}: incomplete HDF5 file ({error}); copy it again") from error
+
+
+def _elsewhere(path: Path, name: str, file: str) -> LogError:
+    return LogError(
+        f"{path}: {name!r} lies in another file, {file!r}, and only the log is read; "
+        "copy the values into it"
+    )
+
+
+def _columns(path: Path, name: str, array: Any) -> Named:
+    """Yields the columns of an array or an HDF5 data set; none for an array that is no signal."""
+    if array.dtype.kind not in "biuf" or not 1 <= array.ndim <= 2 or max(array.shape) < 2:
+        return
+    if min(array.shape) > _MOST_COLUMNS and array.ndim == 2:
+        return
+    check_numbers(path, max(array.shape))
+    check_bytes(path, array.size * array.dtype.itemsize)
+    values = np.asarray(array[...])
+    if values.ndim == 1 or min(values.shape) == 1:
+        yield name, values.reshape(-1)
+        return
+    for j, column in enumerate(values if values.shape[0] < values.shape[1] else values.T):
+        yield f"{name}[{j}]", column
+
+
+def _log(path: Path, columns: Named) -> LogInMemory:
+    arrays, size = {}, 0
+    for name, values in columns:
+        arrays[name] = values
+        size += values.nbytes
+        check_columns(path, len(arrays))
+        check_bytes(path, size)
+    if not arrays:
+        raise LogError(f"{path}: expected a vector or matrix of numbers, found none")
+    return LogInMemory(path, arrays)

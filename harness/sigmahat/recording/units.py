@@ -1,0 +1,125 @@
+"""Converts the columns of a log to the units of their ports."""
+
+import math
+import re
+from difflib import get_close_matches
+
+import numpy as np
+
+from sigmahat.recording.configuration import PORTS, Port
+from sigmahat.recording.log import Array, LogError
+
+_USUAL = ("rad", "mrad", "deg", "turn", "counts", "N.m", "mN.m", "kN.m", "lbf.in", "A", "mA", "mm")
+_USUAL_TIMES = ("s", "ms", "us", "ns", "min", "h")
+_LONGEST = 40  # characters of a unit
+_SMALL = "\u2070\u00b9\u00b2\u00b3\u2074-\u2079"  # digits that are written as exponents
+_TOWER = re.compile(rf"[\d){_SMALL}]\s*(\*\*|\^|[{_SMALL}])|(\*\*|\^)\s*[+-]?\s*(\d\d|[^\d\s+-])")
+"""Pattern of a power of a number, or a long exponent: to compute 9**9**9 would take too long."""
+
+
+def seconds(unit: str) -> float:
+    """Returns the seconds in one unit of time. Raises LogError for any other unit."""
+    return _in("time.unit", unit, "s", _USUAL_TIMES)
+
+
+def counts_per_turn(port: Port) -> float | None:
+    """Returns the counts of the encoder per turn of the joint; None for a port without counts."""
+    if port.unit != "counts" or port.counts_per_turn is None:
+        return None
+    return port.counts_per_turn * abs(port.gear_ratio)
+
+
+def factor(name: str, port: Port) -> float:
+    """Returns the factor from the column to the unit of the port, without sign, zero and gear.
+
+    Raises LogError for a unit that is unknown or does not fit, and for a missing key that the unit
+    needs.
+    """
+    where = f"ports.{name}"
+    target = PORTS[name]
+    if port.scale is not None:
+        if port.unit is not None:
+            raise LogError(f"{where}: expected scale or unit, got both; remove one of them")
+        return port.scale
+    if port.unit is None or port.unit == target:
+        return 1.0
+    if port.unit == "counts":
+        if target != "rad":
+            raise LogError(
+                f"{where}: expected a unit of torque, got counts, an angle; set scale instead"
+            )
+        return 2 * math.pi / _needed(where, port, "counts_per_turn", "counts")
+    if target == "N.m" and _is(port.unit, "A"):
+        return _in(where, port.unit, "A") * _needed(where, port, "torque_constant", port.unit)
+    if name == "theta_c" and _is(port.unit, "mm"):
+        per_turn = port.mm_per_turn
+        return _in(where, port.unit, "mm") * (2 * math.pi / per_turn if per_turn else 1.0)
+    return _in(where, port.unit, target)
+
+
+def scale(name: str, port: Port) -> float:
+    """Returns the factor from the column to the unit of the port, with sign and gear."""
+    return port.sign * factor(name, port) / port.gear_ratio
+
+
+def convert(name: str, port: Port, values: Array) -> Array:
+    """Converts the values of an unwrapped column to the unit of the port."""
+    times = scale(name, port)
+    if (times, port.zero) == (1.0, 0.0):
+        return values
+    converted: Array = values - port.zero
+    converted *= times
+    return converted
+
+
+def unwrap(values: Array, period: float) -> tuple[Array, int]:
+    """Unwraps a column of a counter that starts again after a period, and counts the jumps.
+
+    A step of more than half a period between finite values is a jump.
+    """
+    finite = np.isfinite(values)
+    jumps = -np.round(np.diff(values[finite]) / period)
+    unwrapped = values.copy()
+    unwrapped[finite] += period * np.concatenate([[0.0], np.cumsum(jumps)])
+    return unwrapped, int(np.count_nonzero(jumps))
+
+
+def _needed(where: str, port: Port, key: str, unit: str) -> float:
+    value = getattr(port, key)
+    if value is None:
+        raise LogError(f"{where}: unit {unit!r} needs {key}; add it to [{where}]")
+    return float(value)
+
+
+def _is(unit: str, kind: str) -> bool:
+    try:
+        _in("", unit, kind)
+    except LogError:
+        return False
+    return True
+
+
+def _in(where: str, unit: str, target: str, usual: tuple[str, ...] = _USUAL) -> float:
+    if unit == target:  # as usual; pint takes long to import
+        return 1.0
+    if len(unit) > _LONGEST or _TOWER.search(unit):  # pint would compute the power
+        raise LogError(f"{where}: unknown unit {unit[:_LONGEST]!r}{_meant('', usual)}")
+    import pint
+
+    try:
+        # N.m is N*m in the notation of pint.
+        quantity = pint.Quantity(1.0, unit.replace(".", "*"))
+        return float(quantity.to(target.replace(".", "*")).magnitude)
+    except pint.DimensionalityError as error:
+        raise LogError(
+            f"{where}: unit {unit!r} cannot be converted to {target}{_meant('', usual)}"
+        ) from error
+    except Exception as error:  # any: the parser of pint raises many kinds
+        raise LogError(f"{where}: unknown unit {unit!r}{_meant(unit, usual)}") from error
+
+
+def _meant(unit: str, usual: tuple[str, ...]) -> str:
+    similar = get_close_matches(unit, usual, n=2, cutoff=0.5)
+    if similar:
+        return "; did you mean " + " or ".join(map(repr, similar)) + "?"
+    return f"; usual units are {', '.join(usual)}"

@@ -1,0 +1,232 @@
+"""Replays a log through one estimator, and collects statistics of the outputs."""
+
+from collections import Counter
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sigmahat.fmi.instance import Slave, Value
+from sigmahat.recording.configuration import Configuration
+from sigmahat.recording.log import Array, Log
+from sigmahat.recording.replay import OUTPUTS, parameters, play
+from sigmahat.recording.resampling import sample
+from sigmahat.result.curve_of_log import (
+    NEEDED,
+    Answer,
+    curve,
+    extremes,
+    points_of,
+    restarts,
+    shown_points,
+    since_change,
+    spread,
+)
+from sigmahat.result.learned import Learned, go_on
+from sigmahat.result.sheet import powers_of_phi
+from sigmahat.result.stored import LearnedLog, Range
+
+_BUCKETS = 4000
+_OPERATION = ("phi", "setPoint")
+_POINTS = 20_000
+_NOTHING = (np.inf, -np.inf)  # range of no value
+DRAWN = ("sigma", "sigma_std", "tau_e", "tau_e_residual", "phi", "setPoint")
+
+
+def _wider(known: Range, values: Array) -> Range:
+    """Extends a known range so that the range contains further values."""
+    return min(known[0], float(values.min())), max(known[1], float(values.max()))
+
+
+class ReplayStatistics:
+    """Collects extrema of each output in up to 4000 intervals, and statistics of the second half.
+
+    A plot of minima and maxima looks like a plot of all values. The number of extrema does not grow
+    with the log.
+    """
+
+    def __init__(self, ticks: int) -> None:
+        self.bucket = -(-ticks // _BUCKETS)
+        """Ticks per interval; the length of each chunk but the last must be a multiple of it."""
+        self._parts: dict[str, list[Array]] = {name: [] for name in DRAWN}
+        self._half = ticks // 2
+        self.ticks = self._later = self.skipped = 0
+        self._doubts: Counter[str] = Counter()
+        self._squares = 0.0
+        self.later = dict.fromkeys(DRAWN, _NOTHING)
+        """Minimum and maximum of each output in the second half of the log, by output."""
+        self.used: dict[str, Range] = {}
+        """Ranges of phi and setPoint at the samples that the regression used, if any."""
+        self._stride = -(-ticks // _POINTS)
+        self.points: dict[str, list[np.ndarray[Any, Any]]] = {name: [] for name in NEEDED}
+        """Values of the outputs NEEDED at up to 20000 ticks, evenly distributed in the log."""
+        self.last: dict[str, float] = {}  # Real outputs of the last tick
+        self.last_doubt = ""  # item of the output doubt at the last tick
+
+    def add(self, outputs: Mapping[str, np.ndarray[Any, Any]]) -> None:
+        """Adds the outputs of the next ticks."""
+        count = len(outputs["valid"])
+        for name in DRAWN:
+            self._parts[name].append(extremes(outputs[name], self.bucket))
+        first = max(0, self._half - self.ticks)
+        if first < count:
+            valid = outputs["valid"][first:]
+            self._squares += float(np.sum(outputs["epsilon"][first:][valid] ** 2))
+            self._later += int(np.count_nonzero(valid))
+            self._doubts.update(outputs["doubt"][first:].tolist())
+            for name in DRAWN:
+                self.later[name] = _wider(self.later[name], outputs[name][first:])
+        shown = spread(self.ticks, count, self._stride)
+        for name in NEEDED:
+            self.points[name].append(outputs[name][shown])
+        self.skipped += int(np.count_nonzero(~outputs["valid"]))
+        self.ticks += count
+        self.last = {name: float(outputs[name][-1]) for name in OUTPUTS}
+        self.last_doubt = str(outputs["doubt"][-1])
+        learning = outputs["valid"] & (outputs["a"] > 0)
+        for name in _OPERATION if learning.any() else ():
+            self.used[name] = _wider(self.used.get(name, _NOTHING), outputs[name][learning])
+
+    def ends(self, name: str) -> Array:
+        """Returns minimum and maximum of an output in each interval [size: 2 intervals]."""
+        return np.concatenate(self._parts[name])
+
+    @property
+    def doubts(self) -> dict[str, float]:
+        """Fractions of the ticks in the second half, by item of the output `doubt`, sorted."""
+        ticks = self._doubts.total()
+        return {item: count / ticks for item, count in self._doubts.most_common()}
+
+    @property
+    def rms(self) -> float:
+        """RMS of the prediction error of the torque in the second half [N.m]."""
+        return float(np.sqrt(self._squares / max(self._later, 1)))
+
+
+@dataclass(frozen=True)
+class StiffnessChange:
+    """A detected change of the stiffness, with time and relative size."""
+
+    t: float  # time since the start of the log [s]
+    relative: float | None
+    """Relative difference between the last confident estimates before this change and before the
+    next change [1], at the detected deformation and set-point; None without both estimates."""
+
+    @property
+    def in_words(self) -> str:
+        """Sentence about the change for the user."""
+        if self.relative is None:
+            return f"the stiffness changed at {self.t:.4g} s, by how much is not known"
+        return f"the stiffness changed by {100 * self.relative:+.0f} % at {self.t:.4g} s"
+
+
+class Changes:
+    """Collects changes of the stiffness from the outputs of a replay.
+
+    The estimator may start again several times before the estimate follows a change. A further
+    change counts only after a confident estimate since the last change.
+    """
+
+    def __init__(self, every: Mapping[str, Value], T: float) -> None:
+        """every  parameters of the estimator"""
+        n, m = int(every["rls.n"]), int(every["rls.m"])
+        self.names = [f"eta[{i},{j}]" for i in range(n) for j in range(m)]
+        """Names of the required outputs besides change_age, confident, phi and setPoint."""
+        self._powers = np.repeat(powers_of_phi(bool(every["rls.symmetric"]), n), m)
+        self._powers_of_set_point = np.tile(np.arange(m), n)
+        self._T, self._ticks, self._age, self._followed = T, 0, -1.0, True
+        self._eta: NDArray[np.float64] | None = None  # at the last confident tick since a change
+        self._at = 0.0, 0.0  # deformation and set-point of the last change
+        self._before: float | None = None  # stiffness before the last change, at this point
+        self.found: list[StiffnessChange] = []  # all changes until now
+
+    def add(self, outputs: Mapping[str, NDArray[Any]]) -> None:
+        """Adds the outputs of the next ticks."""
+        age = outputs["change_age"]
+        eta = np.column_stack([outputs[name] for name in self.names])
+        confident = np.flatnonzero(outputs["confident"])
+        for begin, end in pairwise([-1, *restarts(age, self._age).tolist(), len(age)]):
+            if begin >= 0 and self._followed:
+                self._at = float(outputs["phi"][begin]), float(outputs["setPoint"][begin])
+                self._before = None if self._eta is None else self._stiffness(self._eta)
+                self._eta, self._followed = None, False
+                self.found.append(StiffnessChange(self._T * (self._ticks + begin), None))
+            inside = confident[(confident >= begin) & (confident < end)]
+            if len(inside):
+                self._eta, self._followed = eta[inside[-1]], True
+                if self._before is not None and self._before > 0:
+                    relative = self._stiffness(self._eta) / self._before - 1
+                    self.found[-1] = StiffnessChange(self.found[-1].t, relative)
+        self._ticks, self._age = self._ticks + len(age), float(age[-1])
+
+    def _stiffness(self, eta: NDArray[np.float64]) -> float:
+        """Computes the stiffness by (21) at the point of the last detected change [N.m/rad]."""
+        (phi, set_point), p = self._at, self._powers
+        slopes = p * np.power(phi, np.maximum(p - 1, 0))
+        return float(eta @ (slopes * np.power(set_point, self._powers_of_set_point)))
+
+
+_CHUNK = 1 << 15  # approximate number of ticks per chunk, and of rows per group in Parquet
+
+
+class Replay:
+    """Replays every row of a log once through an estimator."""
+
+    def __init__(
+        self, slave: Slave, log: Log, configuration: Configuration, learned: Learned | None = None
+    ) -> None:
+        """Initialises the slave, restores the state from earlier logs, and samples the log.
+
+        Raises LogError if log or state do not fit the configuration, FmuError if the FMU refuses.
+        """
+        start = parameters(slave.fmu, configuration)
+        self.slave, self.log, self.configuration = slave, log, configuration
+        self.every = slave.fmu.parameters(start)  # all parameters of the estimator
+        configuration.need_ports(str(self.every["modality"]))
+        slave.initialize(start)
+        # The state is restored before the log is read, because this step may fail.
+        self.t = 0.0 if learned is None else go_on(slave, learned, self.every, configuration.path)
+        """Present time of the estimator [s]."""
+        self.samples = sample(log, configuration, float(self.every["samplePeriod"]))
+        self.statistics = ReplayStatistics(len(self.samples.values))
+        self.changes = Changes(self.every, self.samples.T)
+        """Changes of the stiffness in the replayed part of the log."""
+        self.method = str(self.every["method"])  # method of the estimator
+        self.logs = [] if learned is None else list(learned.logs)
+        """Logs that the estimator has processed; at the end also the present log."""
+
+    def run(
+        self,
+        add: Callable[[Mapping[str, Any]], object] = lambda outputs: None,
+        progress: Callable[[int], object] = lambda thousandths: None,
+        digest: str = "",
+    ) -> None:
+        """Replays all samples; calls `add` with outputs, and `progress` with thousandths since the
+        last call. The argument digest is the SHA-256 of the log, which is stored with the state.
+        """
+        statistics, ticks, done = self.statistics, len(self.samples.values), 0
+        of_curve = self.changes.names
+        chunk = statistics.bucket * max(1, _CHUNK // statistics.bucket)
+        for outputs in play(self.slave, self.samples, chunk, self.t, of_curve):
+            self.changes.add(outputs)
+            for name in of_curve:
+                del outputs[name]
+            statistics.add(outputs)
+            add(outputs)
+            now = done + len(outputs["valid"])
+            progress(1000 * now // ticks - 1000 * done // ticks)
+            done = now
+        self.t += self.samples.T * ticks
+        phi, set_point = (statistics.used.get(name) for name in _OPERATION)
+        file = str(self.log.path)
+        self.logs.append(LearnedLog(file, digest, ticks, statistics.skipped, phi, set_point))
+
+    def answer(self) -> Answer:
+        """Computes the curve and its measured points at the end of the replay."""
+        parts = self.statistics.points.items()
+        outputs = since_change({name: np.concatenate(of_chunks) for name, of_chunks in parts})
+        found = curve(self.slave, self.every, self.logs, points_of(outputs, self.method))
+        return Answer(found, shown_points(outputs, self.method), self.statistics.last_doubt)

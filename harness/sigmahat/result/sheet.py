@@ -1,0 +1,271 @@
+"""Defines and writes the data sheet of a joint, `joint.json`: results of an estimation, and start
+values with which the FMU continues from these results.
+
+Numbers are written with all digits, so that a reader gets exactly the estimates.
+"""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic.dataclasses import dataclass
+
+from sigmahat.fmi.instance import Slave, Value
+from sigmahat.fmi.sample_loop import present_values
+from sigmahat.result.stored import NO_OTHER_KEYS, FmuId, Format, LearnedLog, Range, Text
+
+Array = NDArray[np.float64]
+
+UNITS = {"phi": "rad", "set_point": "1", "sigma": "N.m/rad", "tau_e": "N.m", "misfit": "1"}
+
+
+@dataclass(frozen=True, config=NO_OTHER_KEYS)
+class Source:
+    """The configuration file from which the data sheet was created."""
+
+    file: Text  # path of the file
+    sha256: Text | None  # SHA-256 of the bytes; None if the file does not exist
+
+
+@dataclass(frozen=True, config=NO_OTHER_KEYS)
+class Stiffness:
+    """The stiffness at one deformation and set-point, with its interval."""
+
+    phi: float  # deformation [rad]
+    set_point: float  # set-point [1]
+    sigma: float  # stiffness at this point [N.m/rad]
+    interval: Range | None  # 95 % interval [N.m/rad]; None: the method gives none
+
+
+@dataclass(frozen=True, config=NO_OTHER_KEYS)
+class Polynomial:
+    """Torque of the spring: sum of eta[i][j] set-point^powers_of_set_point[j] phi^powers_of_phi[i].
+
+    The stiffness is the derivative of the torque with respect to phi.
+    """
+
+    powers_of_phi: list[int]
+    powers_of_set_point: list[int]
+    eta: list[list[float]]  #: [size: powers of phi x powers of the set-point]
+    units: list[list[Text]]  #: Units of eta; phi is in rad, the set-point has no unit.
+    phi: Range | None
+    """Range of the measured deformation [rad]; outside, the polynomial is extrapolated."""
+    set_point: Range | None  #: Range of the set-point in the data [1].
+
+    def at(self, phi: Array, set_point: float | Array) -> tuple[Array, Array]:
+        """Torque [N.m] and stiffness [N.m/rad] at deformations [rad].
+
+        set_point  one for all deformations, or one for each [1]
+        """
+        powers = np.power.outer(np.asarray(set_point, dtype=float), self.powers_of_set_point)
+        rows = np.array(self.eta) @ powers.T
+        torque, stiffness = np.zeros_like(phi), np.zeros_like(phi)
+        for coefficient, power in zip(rows, self.powers_of_phi, strict=True):
+            torque += coefficient * phi**power
+            if power:
+                stiffness += coefficient * power * phi ** (power - 1)
+        return torque, stiffness
+
+    @property
+    def is_of_set_point(self) -> bool:
+        """Whether the torque depends on the set-point."""
+        return any(any(row[1:]) for row in self.eta)
+
+
+@dataclass(frozen=True, config=NO_OTHER_KEYS)
+class Parameter:
+    """A parameter of the joint."""
+
+    value: float
+    unit: Text
+    interval: Range | None
+    """95 % interval; None if the value is taken as exact, or the method gives no interval."""
+    interval_from: Text  # "identify" or "prior"; or why no interval is given
+
+
+@dataclass(frozen=True, config=NO_OTHER_KEYS)
+class RestsOn:
+    """Assumptions of the result that no data can verify."""
+
+    torque_gain: float
+    """Relative standard deviation of the gain of the torque [1]; the intervals include it."""
+    sigma_per_gain: float  # relative change of the stiffness per relative change of the gain [1]
+    exact: list[Text]  # parameters that are taken as exact
+    absent: list[Text]  # effects that are taken as absent
+
+
+@dataclass(frozen=True, config=NO_OTHER_KEYS)
+class Check:
+    """Outputs of the FMU with the start values, before any sample, to verify these values."""
+
+    sigma: float  # [N.m/rad]
+    tau_e: float  # [N.m]
+
+
+@dataclass(frozen=True, config=NO_OTHER_KEYS)
+class Sheet:
+    """The contents of the data sheet `joint.json`."""
+
+    format: Text
+    version: int
+    sigmahat: Text  # version of the package that wrote the file
+    units: dict[str, Text]
+    """Units of the numbers with these keys in the file; an interval has the unit of its value."""
+    fmu: FmuId
+    logs: list[LearnedLog]  # logs that the estimator has processed, in this order
+    configuration: Source
+    method: Text
+    modality: Text
+    at_the_end: Stiffness  # the last estimate
+    confident: bool  # whether the estimator was confident at the end
+    doubt: Text  # why the estimator was not confident
+    misfit: float  # misfit of the model; 1 if the model holds [1]
+    polynomial: Polynomial
+    curve: list[Stiffness] | None
+    """The stiffness in the range of the data; None if the method gives no interval."""
+    parameters: dict[str, Parameter]
+    rests_on: RestsOn
+    start_values: dict[str, bool | int | float | str]
+    """Start values of the FMU by name, with which the FMU continues from the estimate."""
+    check: Check
+
+
+FORMAT = Format("joint.json", "sigmahat joint data sheet", 1, Sheet)  # format of the file
+
+
+def origin(sheet: Sheet) -> Iterator[str]:
+    """Yields lines about the origin of the values, for comments in other files."""
+    for log in sheet.logs:
+        yield f"learned from {one_line(log.file)}, SHA-256 {log.sha256}"
+    yield f"written by sigmahat {one_line(sheet.sigmahat)}"
+
+
+def one_line(text: str) -> str:
+    """Replaces characters that could end a line, a comment or a string in other file formats."""
+    return re.sub(r"-(?=-)", "- ", re.sub(r"[^\w .,:/\\+()@=-]", "_", text, flags=re.ASCII))
+
+
+def powers_of_phi(symmetric: bool, n: int) -> list[int]:
+    """Returns the powers of the deformation in a polynomial of order n, (18)."""
+    return [2 * i + 1 if symmetric else i for i in range(n)]
+
+
+def _units(powers: Sequence[int], m: int) -> list[list[str]]:
+    """Returns the units of the coefficients, with m powers of the set-point."""
+    return [[{0: "N.m", 1: "N.m/rad"}.get(power, f"N.m/rad{power}")] * m for power in powers]
+
+
+def polynomial(
+    start: Mapping[str, Value], phi: Range | None, set_point: Range | None
+) -> Polynomial:
+    """Creates the polynomial of start values; phi and set_point are the ranges of the data."""
+    n, m = int(start["rls.n"]), int(start["rls.m"])
+    powers = powers_of_phi(bool(start["rls.symmetric"]), n)
+    return Polynomial(
+        powers_of_phi=powers,
+        powers_of_set_point=list(range(m)),
+        eta=[[float(start[f"rls.eta_0[{i},{j}]"]) for j in range(m)] for i in range(n)],
+        units=_units(powers, m),
+        phi=phi,
+        set_point=set_point,
+    )
+
+
+_MOST_POWERS = 8  # largest rls.n of the FMU
+_MOST_COEFFICIENTS = 24  # limit, so that columns remain in the FMU for further effects
+_SAME = 1e-6  # relative difference of two stiffnesses by rounding
+
+
+def with_knees(
+    curve: Polynomial, phi: Array, set_point: Array, tau_e: Array, sigma: Array
+) -> Polynomial:
+    """Fits a polynomial to the curve of an estimator, whose slope may change suddenly at knees.
+
+    The given coefficients do not contain the knees. Without knees, the curve is unchanged.
+
+    phi, set_point, tau_e, sigma   outputs of the estimator [rad, 1, N.m, N.m/rad], of one size
+    """
+    torque, stiffness = curve.at(phi, set_point)
+    torque, beyond = tau_e - torque, sigma - stiffness
+    if not np.any(np.abs(beyond) > _SAME * np.max(np.abs(sigma), initial=0.0)):
+        return curve
+    m = len(curve.powers_of_set_point)
+    most = min(_MOST_POWERS, _MOST_COEFFICIENTS // m)
+    powers = powers_of_phi(0 not in curve.powers_of_phi, max(most, len(curve.eta)))
+    largest = float(np.max(np.abs(phi)))
+    x = phi / largest
+    rows = [np.concatenate([x**e, e * x ** max(e - 1, 0)]) for e in powers]
+    wanted = np.concatenate([torque, beyond * largest])
+    found = np.linalg.lstsq(np.transpose(rows), wanted, rcond=None)[0].tolist()
+    eta = [*map(list, curve.eta), *([0.0] * m for _ in powers[len(curve.eta) :])]
+    for row, coefficient, e in zip(eta, found, powers, strict=True):
+        row[0] += coefficient / largest**e
+    return replace(curve, powers_of_phi=powers, eta=eta, units=_units(powers, m))
+
+
+def start_of(curve: Polynomial) -> dict[str, Value]:
+    """Returns the start values with which an FMU has the given curve."""
+    start: dict[str, Value] = {
+        f"rls.eta_0[{i},{j}]": float(x) for (i, j), x in np.ndenumerate(curve.eta)
+    }
+    return {**start, "rls.n": len(curve.eta), "rls.m": len(curve.eta[0])}
+
+
+_CURVE = "rls.eta_0["
+_NOT_IN_A_RUN = (
+    *("B", "load_friction", "eccentric", "eccentric_motor", "delay", "reversal", "power", "gap"),
+    "hysteresis",
+)
+"""Names of the priors of effects that are equal in all recordings of a joint."""
+_NONE = 1e-6  # uncertainty of a curve: so small that the curve does not change
+_LARGEST = 1e12  # largest prior that the FMU accepts
+
+
+def start_values(slave: Slave, every: Mapping[str, Value]) -> dict[str, Value]:
+    """Returns start values of an FMU from the present curve and motor data of a slave.
+
+    FilteredRegression may use higher powers than given by rls.n and rls.m; all powers are returned.
+    Priors do not change: the new FMU takes the curve as the mean of its prior. The uncertainty of
+    the curve is lost.
+
+    every  parameters of the slave
+    """
+    eta = [name for name in slave.fmu.variables if name.startswith("eta[")]
+    found = present_values(slave, [*eta, "B_hat", "D_theta_hat"])
+    at = {name: tuple(map(int, name[4:-1].split(","))) for name in eta}
+    used = [at[name] for name in eta if found[name]]
+    n = max([int(every["rls.n"]), *(i + 1 for i, _ in used)])
+    m = max([int(every["rls.m"]), *(j + 1 for _, j in used)])
+    start = {name: value for name, value in every.items() if not name.startswith(_CURVE)}
+    start |= {"rls.n": n, "rls.m": m}
+    for name, value in (("motor.B", found["B_hat"]), ("motor.D_theta", found["D_theta_hat"])):
+        if value > 0:  # the FMU refuses other values, and `doubt` reports such values
+            start[name] = value
+    for name, (i, j) in at.items():
+        if i < n and j < m:
+            start[f"{_CURVE}{i},{j}]"] = found[name]
+    kinds = {name: slave.fmu.variable(name).type for name in start}
+    return {n: bool(v) if kinds[n] == "Boolean" else v for n, v in start.items()}
+
+
+def as_fixed_curve(start: Mapping[str, Value]) -> dict[str, Value]:
+    """Returns start values with which the curve and the inertia are not estimated.
+
+    Only effects are estimated that differ between recordings. These are bias of the torque or zero
+    of the deformation, friction, and a time lag between the encoders (as a damping). Other effects
+    would hide a wrong stiffness: a delay of the torque, for example, looks like a wrong stiffness
+    in a motion of one frequency.
+
+    start  from start_values, of the method FilteredRegression
+    """
+    fixed = {**start, **{f"prior.{name}": 0.0 for name in _NOT_IN_A_RUN}}
+    fixed |= {"regression.memory": 0.0, "regression.drift": 0.0}
+    tau_e = float(start["prior.tau_e"])
+    if not tau_e:
+        return {**fixed, "prior.nominal": _NONE}
+    # Priors that are relative to prior.tau_e keep their absolute value.
+    shares = ("bias", "damping")
+    wider = {f"prior.{n}": min(float(start[f"prior.{n}"]) / _NONE, _LARGEST) for n in shares}
+    return {**fixed, **wider, "prior.nominal": 0.0, "prior.tau_e": tau_e * _NONE}

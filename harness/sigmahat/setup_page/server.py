@@ -1,0 +1,112 @@
+"""Serves the page on this computer alone, until Ctrl-C."""
+
+import logging
+import secrets
+import signal
+import threading
+import warnings
+import webbrowser
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+
+import tomlkit
+from bokeh.application import Application
+from bokeh.application.handlers import FunctionHandler
+from bokeh.core.validation import silence
+from bokeh.core.validation.warnings import EMPTY_LAYOUT
+from bokeh.document import Document
+from bokeh.resources import Resources
+from bokeh.server.server import BaseServer
+from bokeh.server.tornado import BokehTornado
+from bokeh.server.util import bind_sockets
+from bokeh.util.warnings import BokehUserWarning
+from tornado.httpserver import HTTPServer
+from tornado.ioloop import IOLoop
+
+from sigmahat.fmi.interrupts import handling
+from sigmahat.recording.log import Log
+from sigmahat.setup_page.background import Jobs
+from sigmahat.setup_page.setup import Setup
+from sigmahat.setup_page.window import Window
+
+_HOST = "127.0.0.1"
+_ENDS = ("SIGINT", "SIGTERM", "SIGHUP")  # signals that end the page; Windows has no SIGHUP
+
+
+class _Small(BokehTornado):  # type: ignore[misc] # types of Bokeh are not checked
+    """Serves only the parts of BokehJS that the page uses, so it loads in half of the time."""
+
+    def resources(self, absolute_url: str | bool | None = None) -> Resources:
+        found = super().resources(absolute_url)
+        found.components = ["bokeh", "bokeh-widgets"]
+        return found
+
+
+def serve(
+    log: Log,
+    path: Path,
+    document: tomlkit.TOMLDocument | None,
+    port: int,
+    say: Callable[[str], object],
+) -> Path | None:
+    """Serves the page of a log, and opens it in the browser.
+
+    Anybody with the address can use the page. The address contains a random token. A page of
+    another origin cannot connect to this page.
+
+    path      the file to write
+    document  contents of the file, to start from; None: the guess of `init`
+    port      0 for any free port
+    say       is called with messages for the user
+
+    Returns the file with edits that were not written, after Ctrl-C. Raises ValueError if the port
+    is in use.
+    """
+    setup = Setup(log, path)
+    jobs = Jobs(setup, IOLoop.current().add_callback)
+    token = secrets.token_urlsafe(16)
+    server, port = _listen(
+        token, port, lambda window: Window(setup, window, jobs.start, jobs.estimate)
+    )
+    address = f"http://{_HOST}:{port}/{token}"
+    ends = [getattr(signal, name) for name in _ENDS if hasattr(signal, name)]
+    with handling(lambda *_: server.io_loop.add_callback_from_signal(server.io_loop.stop), *ends):
+        server.start()
+        if document is not None:
+            setup.start_from(document)
+        say(f"{log.path} is open until you press Ctrl-C. Address:\n{address}")
+        threading.Thread(target=partial(_open, address, say), daemon=True).start()
+        server.io_loop.start()
+    server.stop()
+    return setup.write_draft()
+
+
+def _listen(token: str, port: int, window: Callable[[Document], object]) -> tuple[BaseServer, int]:
+    """Starts a server and returns its port; `window` fills the document of each window."""
+    # No messages about other requests of browsers, and about windows that close.
+    for name in ("tornado.access", "bokeh.server.views"):
+        logging.getLogger(name).setLevel(logging.ERROR)
+    silence(EMPTY_LAYOUT)  # at first, the page has no checks and no curve
+    # A browser may refer to a plot that was replaced meanwhile.
+    warnings.filterwarnings("ignore", "reference already known", BokehUserWarning)
+    try:
+        sockets, port = bind_sockets(_HOST, port)
+    except OSError as error:
+        reason = error.strerror or error
+        raise ValueError(
+            f"port {port} cannot be used ({reason}); omit --port to use a free port"
+        ) from error
+    tornado = _Small(
+        {f"/{token}": Application(FunctionHandler(window))},
+        extra_websocket_origins=[f"{_HOST}:{port}"],
+        use_index=False,
+    )
+    http = HTTPServer(tornado)
+    http.add_sockets(sockets)
+    return BaseServer(IOLoop.current(), tornado, http), port
+
+
+def _open(address: str, say: Callable[[str], object]) -> None:
+    if not webbrowser.open(address):
+        say("No browser was found: open the address in a browser on this computer.")
