@@ -1,8 +1,8 @@
 """The public names, for lazy_loader and type checkers; see __init__.py."""
 
-from .check.check import check as check
-from .check.findings import Checked as Checked
-from .check.findings import Finding as Finding
+from .checks.check import check as check
+from .checks.findings import Checked as Checked
+from .checks.findings import Finding as Finding
 from .estimator.estimator import Estimator as Estimator
 from .experiments.engine import run as run
 from .experiments.metrics import Indices as Indices

@@ -237,5 +237,5 @@ def test_a_range_that_is_far_from_the_motion_is_warned_of_once(
 
 
 def test_an_unknown_name_of_the_package_is_an_attribute_error() -> None:
-    with pytest.raises(AttributeError, match="no attribute 'estimator'"):
-        sigmahat.estimator  # type: ignore[attr-defined]  # noqa: B018
+    with pytest.raises(AttributeError, match="no attribute 'Estimates'"):
+        sigmahat.Estimates  # type: ignore[attr-defined]  # noqa: B018

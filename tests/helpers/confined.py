@@ -25,7 +25,7 @@ _SERVER = multiprocessing.get_context("forkserver")
 _SERVER.set_forkserver_preload(
     [
         *("h5py", "scipy.io", "scipy.signal", "matplotlib.figure", "rosbags.highlevel"),
-        *("sigmahat.check.check", "sigmahat.guess.guess", "sigmahat.result.estimate"),
+        *("sigmahat.checks.check", "sigmahat.guess.guess", "sigmahat.result.estimate"),
         *("sigmahat.motor.identify", "sigmahat.recording.readers.csv_parquet"),
         *("sigmahat.recording.readers.matrices", "sigmahat.report.page", "sigmahat.sweep.job"),
         *("sigmahat.result.validate", "sigmahat.cli"),

@@ -7,8 +7,8 @@ import pytest
 
 from foreign_joint import GEAR, STIFFNESS, T, joint
 from recorded_logs import Array, configured, in_memory, write
-from sigmahat.check.check import check
-from sigmahat.check.findings import Kind
+from sigmahat.checks.check import check
+from sigmahat.checks.findings import Kind
 from sigmahat.motor.identify import identify
 from sigmahat.recording.configuration import read_configuration
 from sigmahat.recording.log import LogInMemory

@@ -12,7 +12,7 @@ import real_joint
 from real_joint import SETTINGS, Log, M, N
 from shared_data import data_folder
 from sigmahat import Estimator
-from sigmahat.check.check import check
+from sigmahat.checks.check import check
 from sigmahat.fmi.instance import Value
 from sigmahat.recording.configuration import Configuration, Port, Time
 from sigmahat.recording.readers.formats import open_log

@@ -12,7 +12,7 @@ import click
 from sigmahat.commands import common
 
 if TYPE_CHECKING:
-    from sigmahat.check.findings import Checked
+    from sigmahat.checks.findings import Checked
     from sigmahat.guess.guess import JointGuess
     from sigmahat.motor.quantities import Identified
     from sigmahat.recording.configuration import Configuration
@@ -126,9 +126,9 @@ def check(log: Path, config: Path, joint: str) -> int:
     Errors of signs, units, gear ratios, zeros and delays are found. The command also lists what no
     log can show. Exit status: 0 if nothing contradicts the log, 1 if something does.
     """
-    from sigmahat.check.check import check
-    from sigmahat.check.findings import as_dict
-    from sigmahat.check.text import summary
+    from sigmahat.checks.check import check
+    from sigmahat.checks.findings import as_dict
+    from sigmahat.checks.text import summary
 
     with common.errors_in_one_line(config, "--config"):
         checked = common.for_each_joint(log, config, joint, check)
@@ -155,8 +155,8 @@ def identify(log: Path, config: Path, joint: str, torque_constant: bool, dry_run
     """
     import tomlkit
 
-    from sigmahat.check.findings import as_dict as checks_as_dict
-    from sigmahat.check.text import summary as of_checks
+    from sigmahat.checks.findings import as_dict as checks_as_dict
+    from sigmahat.checks.text import summary as of_checks
     from sigmahat.files.output import write_whole
     from sigmahat.motor.quantities import as_dict, summary
     from sigmahat.motor.write import update
@@ -183,7 +183,7 @@ def _identified(
     torque_constant: bool, dry_run: bool, log: Log, before: Configuration
 ) -> tuple[Identified, Checked]:
     """The identified values of a joint, and the checks with these values; no file is written."""
-    from sigmahat.check.check import check_identified
+    from sigmahat.checks.check import check_identified
     from sigmahat.motor.identify import identify
     from sigmahat.motor.write import update
     from sigmahat.recording.configuration import checked_configuration, read_document

@@ -14,7 +14,7 @@ import click
 from sigmahat.commands import common
 
 if TYPE_CHECKING:
-    from sigmahat.check.findings import Checked
+    from sigmahat.checks.findings import Checked
     from sigmahat.recording.configuration import Configuration
     from sigmahat.recording.log import Log
     from sigmahat.result.estimate import Estimate
@@ -53,8 +53,8 @@ def estimate(
     `sigmahat export`, and the state of the estimator (state.json) for --start-from.
     With several joints, each joint has its own folder, and a row in joints.csv.
     """
-    from sigmahat.check.findings import as_dict
-    from sigmahat.check.text import summary as of_checks
+    from sigmahat.checks.findings import as_dict
+    from sigmahat.checks.text import summary as of_checks
     from sigmahat.files.tables import aligned
     from sigmahat.result.estimate import summary, write_joints
 
@@ -84,8 +84,8 @@ def _estimated(
     out: Path, start_from: Path | None, to: str | None, log: Log, configuration: Configuration
 ) -> tuple[Estimate, Checked]:
     """Writes the files of a joint. Returns its estimate and the result of the checks."""
-    from sigmahat.check.check import check
-    from sigmahat.check.text import rows
+    from sigmahat.checks.check import check
+    from sigmahat.checks.text import rows
     from sigmahat.files.output import output_folder
     from sigmahat.result import estimate as job
 

@@ -125,7 +125,7 @@ class Jobs:
         self._later(partial(setup.guessed, *found))
 
     def _check(self, version: int, text: str) -> None:
-        from sigmahat.check.check import check
+        from sigmahat.checks.check import check
         from sigmahat.recording.configuration import checked_configuration
 
         log, path = self._setup.log, self._setup.path
@@ -153,8 +153,8 @@ class Jobs:
 
     def _identify_and_estimate(self, version: int, text: str) -> None:
         """Writes the results, and gives the setup the configuration with the identified values."""
-        from sigmahat.check.check import check
-        from sigmahat.check.text import rows
+        from sigmahat.checks.check import check
+        from sigmahat.checks.text import rows
         from sigmahat.files.output import output_folder
         from sigmahat.motor.identify import identify
         from sigmahat.motor.write import update

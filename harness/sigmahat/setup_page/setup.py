@@ -19,7 +19,7 @@ from sigmahat.setup_page import edits
 from sigmahat.setup_page.edits import BY_SCALE, OF_PORT
 
 if TYPE_CHECKING:
-    from sigmahat.check.findings import Checked
+    from sigmahat.checks.findings import Checked
     from sigmahat.guess.ports import PortGuess
     from sigmahat.result.curve_of_log import Answer
 

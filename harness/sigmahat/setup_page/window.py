@@ -23,7 +23,7 @@ from sigmahat.setup_page.setup import Setup
 from sigmahat.show.style import PAGE
 
 if TYPE_CHECKING:
-    from sigmahat.check.findings import Checked, Finding
+    from sigmahat.checks.findings import Checked, Finding
 
 _NONE = ""
 _TEMPLATES = environment(Path(__file__).parent)
@@ -157,7 +157,7 @@ class FindingsPanel:
         self.root.children = rows
 
     def _findings(self, checked: Checked) -> list[UIElement]:
-        from sigmahat.check.text import TITLES, nothing_found, sentence
+        from sigmahat.checks.text import TITLES, nothing_found, sentence
 
         rows = [] if checked.is_wrong else [_line(nothing_found(checked), "fine")]
         for severity, title in TITLES.items():
@@ -261,8 +261,8 @@ class Window:
             self._document.add_next_tick_callback(self._show)
 
     def _show(self) -> None:
-        from sigmahat.check.findings import Severity
-        from sigmahat.check.text import sentence
+        from sigmahat.checks.findings import Severity
+        from sigmahat.checks.text import sentence
         from sigmahat.result.curve import headline
 
         self._is_due = False

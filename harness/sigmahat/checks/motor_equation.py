@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sigmahat.check.view import View
+from sigmahat.checks.view import View
 from sigmahat.motor import equation
 from sigmahat.motor.coherence import coherent_range
 from sigmahat.motor.equation import MOTOR, Equations, Fit, Form, Stribeck, extra, fit

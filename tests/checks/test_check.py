@@ -21,9 +21,9 @@ from checked_logs import (
 )
 from command_line import Shell
 from recorded_logs import CONFIGURATION, awas_log, configured, in_memory, write_log
-from sigmahat.check.check import check
-from sigmahat.check.findings import Checked, Finding, Kind, Severity
-from sigmahat.check.text import sentence
+from sigmahat.checks.check import check
+from sigmahat.checks.findings import Checked, Finding, Kind, Severity
+from sigmahat.checks.text import sentence
 from sigmahat.recording.log import LogInMemory
 from sigmahat.result.curve import stiffness_in_the_middle
 from sigmahat.result.estimate import estimate

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from sigmahat.check.findings import Proposal
+from sigmahat.checks.findings import Proposal
 from sigmahat.recording.configuration import Port
 from sigmahat.recording.units import factor
 

@@ -5,8 +5,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from sigmahat.check.findings import Finding, Kind, Proposal, Severity
-from sigmahat.check.view import View
+from sigmahat.checks.findings import Finding, Kind, Proposal, Severity
+from sigmahat.checks.view import View
 from sigmahat.guess.columns import PERIODS, smallest_step
 from sigmahat.motor.noise import is_only_noise
 from sigmahat.recording.configuration import Port

@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from sigmahat.check.changes import distance
-from sigmahat.check.dynamics import dynamics
-from sigmahat.check.findings import Checked, Finding, Kind, Severity
-from sigmahat.check.relation import relation, slope_of
-from sigmahat.check.samples import at_rest, columns
-from sigmahat.check.text import DOUBTS
-from sigmahat.check.view import View, view
+from sigmahat.checks.changes import distance
+from sigmahat.checks.dynamics import dynamics
+from sigmahat.checks.findings import Checked, Finding, Kind, Severity
+from sigmahat.checks.relation import relation, slope_of
+from sigmahat.checks.samples import at_rest, columns
+from sigmahat.checks.text import DOUBTS
+from sigmahat.checks.view import View, view
 from sigmahat.fmi.instance import FmuError, Slave, Value, installed
 from sigmahat.motor.noise import variance
 from sigmahat.motor.quantities import WIDE

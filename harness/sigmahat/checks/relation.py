@@ -17,11 +17,11 @@ from typing import Any
 
 import numpy as np
 
-from sigmahat.check.changes import Change, changes, distance, gear_of
-from sigmahat.check.findings import Finding, Kind, Severity
-from sigmahat.check.motor_equation import LINEAR, Fitted, fitted, gear_error
-from sigmahat.check.samples import encoder_step, step
-from sigmahat.check.view import View
+from sigmahat.checks.changes import Change, changes, distance, gear_of
+from sigmahat.checks.findings import Finding, Kind, Severity
+from sigmahat.checks.motor_equation import LINEAR, Fitted, fitted, gear_error
+from sigmahat.checks.samples import encoder_step, step
+from sigmahat.checks.view import View
 from sigmahat.motor.equation import MOTOR, Signals, is_worse
 from sigmahat.motor.noise import low_pass
 

@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from sigmahat.check import motor_equation
-from sigmahat.check.changes import distance, gear_of
-from sigmahat.check.findings import Finding, Kind, Severity
-from sigmahat.check.motor_equation import LINEAR, Fitted, explains, with_all_powers
-from sigmahat.check.relation import Relation
-from sigmahat.check.view import View
+from sigmahat.checks import motor_equation
+from sigmahat.checks.changes import distance, gear_of
+from sigmahat.checks.findings import Finding, Kind, Severity
+from sigmahat.checks.motor_equation import LINEAR, Fitted, explains, with_all_powers
+from sigmahat.checks.relation import Relation
+from sigmahat.checks.view import View
 from sigmahat.motor.equation import MOTOR
 from sigmahat.motor.quantities import WIDE
 from sigmahat.recording.units import scale

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping
 
-from sigmahat.check.findings import Checked, Finding, Kind, Proposal, Severity
+from sigmahat.checks.findings import Checked, Finding, Kind, Proposal, Severity
 from sigmahat.result.data_sheet import WORDS
 
 TITLES = {
