@@ -29,11 +29,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sigmahat.estimator.powers import powers_of_phi
 from sigmahat.fmi.instance import Value
 from sigmahat.motor.noise import SETTLED, low_pass
 from sigmahat.recording.log import Array
 from sigmahat.recording.resampling import Samples, stretches
-from sigmahat.result.sheet import powers_of_phi
 
 MOTOR = ("B", "D_theta", "tau_coulomb")  # first columns, which describe the motor
 COULOMB_VELOCITY = 0.02  # v_s, width of the sign change of the friction [rad/s]

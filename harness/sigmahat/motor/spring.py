@@ -12,10 +12,10 @@ from itertools import combinations
 
 import numpy as np
 
+from sigmahat.estimator.powers import powers_of_phi
 from sigmahat.motor import equation
 from sigmahat.motor.equation import CONSTANT, WIDEST, Equations, Fit, Form, Signals
 from sigmahat.recording.log import Array
-from sigmahat.result.sheet import powers_of_phi
 
 _USUAL = (0.005, 0.995)  # quantiles of the deformation between which the polynomial is valid
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sigmahat.estimator.powers import powers_of_phi
 from sigmahat.fmi.instance import Slave, Value
 from sigmahat.recording.configuration import Configuration
 from sigmahat.recording.log import Array, Log
@@ -26,7 +27,6 @@ from sigmahat.result.curve_of_log import (
     spread,
 )
 from sigmahat.result.learned import Learned, go_on
-from sigmahat.result.sheet import powers_of_phi
 from sigmahat.result.stored import LearnedLog, Range
 
 _BUCKETS = 4000

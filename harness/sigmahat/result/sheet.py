@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic.dataclasses import dataclass
 
+from sigmahat.estimator.powers import powers_of_phi
 from sigmahat.fmi.instance import Slave, Value
 from sigmahat.fmi.sample_loop import present_values
 from sigmahat.result.stored import NO_OTHER_KEYS, FmuId, Format, LearnedLog, Range, Text
@@ -145,11 +146,6 @@ def origin(sheet: Sheet) -> Iterator[str]:
 def one_line(text: str) -> str:
     """Replaces characters that could end a line, a comment or a string in other file formats."""
     return re.sub(r"-(?=-)", "- ", re.sub(r"[^\w .,:/\\+()@=-]", "_", text, flags=re.ASCII))
-
-
-def powers_of_phi(symmetric: bool, n: int) -> list[int]:
-    """Returns the powers of the deformation in a polynomial of order n, (18)."""
-    return [2 * i + 1 if symmetric else i for i in range(n)]
 
 
 def _units(powers: Sequence[int], m: int) -> list[list[str]]:
