@@ -13,10 +13,10 @@ from PIL import Image
 
 from recordings import one_seed
 from sigmahat.experiments.metrics import Indices
-from sigmahat.paper.figures.catalogue import FIGURES
+from sigmahat.paper.figures import FIGURES
 from sigmahat.paper.reproduction import Result, as_dict, conditions, table, write_series
 from sigmahat.paper.scenarios import SCENARIOS
-from sigmahat.show.figure import save
+from sigmahat.show.figure import in_rows, save
 
 ROWS = ["MODEL", "SENSOR", "RESIDUAL", "MODEL-measured"]
 # One scenario of each kind, and the figures that are drawn for each scenario.
@@ -99,9 +99,10 @@ def test_index_that_is_not_defined_is_a_dash_and_null() -> None:
 def line(
     name: str, label: str, panel: int = 0, scenario: str = "table1"
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    axes = FIGURES[name](one_seed(scenario).recording).axes[panel]
-    (found, *_) = (each for each in axes.get_lines() if label in str(each.get_label()))
-    return np.asarray(found.get_xdata()), np.asarray(found.get_ydata())
+    rows = FIGURES[name](one_seed(scenario).recording)
+    panels = [each for row in rows for each in row]
+    curve = next(each for each in panels[panel].curves if label in each.label)
+    return curve.x, curve.y
 
 
 def test_every_figure_belongs_to_a_scenario_and_every_scenario_has_one() -> None:
@@ -113,7 +114,7 @@ def test_every_figure_belongs_to_a_scenario_and_every_scenario_has_one() -> None
 def test_drawn_values_are_those_of_the_recording() -> None:
     recording = one_seed("table1").recording
     for name, label, values in (
-        ("fig3-deformation", "phi", recording.plant["phi"]),
+        ("fig3-deformation", "deformation", recording.plant["phi"]),
         ("fig4-velocity", "Kalman", recording.estimators["RESIDUAL"]["theta_dot"]),
         ("fig4-velocity", "true", recording.plant["theta_dot"]),
         ("fig5-flexibility-torque", "sensor", recording.plant["tau_e_measured"]),
@@ -148,7 +149,7 @@ def test_the_curves_of_a_transmission_are_the_spring_and_its_estimate() -> None:
 @pytest.mark.parametrize(("scenario", "name"), DRAWN)
 @pytest.mark.slow("a scenario is simulated and drawn")
 def test_files_open_and_are_small(scenario: str, name: str, tmp_path: Path) -> None:
-    save(FIGURES[name], one_seed(scenario).recording, tmp_path / name)
+    save(in_rows, FIGURES[name](one_seed(scenario).recording), tmp_path / name)
     with Image.open(tmp_path / f"{name}.png") as image:
         image.load()
         assert image.width >= 1000

@@ -37,12 +37,12 @@ def reproduce(scenario: str, seeds: int, out: Path) -> None:
     with common.errors_in_one_line(out), output_folder(out) as folder:
         with common.progress("Running", seeds if seeds > 1 else chosen.steps) as bar:
             result = reproduce(chosen, numbers, progress=bar.update)
-        from sigmahat.paper.figures.catalogue import FIGURES
-        from sigmahat.show.figure import save
+        from sigmahat.paper.figures import FIGURES
+        from sigmahat.show.figure import in_rows, save
 
         with common.progress("Drawing", len(chosen.figures)) as bar:
             for title in chosen.figures:
-                save(FIGURES[title], result.recording, folder / title)
+                save(in_rows, FIGURES[title](result.recording), folder / title)
                 bar.update(1)
         write_results(result, folder)
 

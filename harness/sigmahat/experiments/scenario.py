@@ -62,7 +62,7 @@ class Scenario:
     estimators: Mapping[str, EstimatorFmu]  #: Estimators by modality.
     comparisons: Sequence[Comparison]
     """Rows of the table. The estimators in them are not variants."""
-    figures: Sequence[str]  #: Names in sigmahat.paper.figures.catalogue.FIGURES.
+    figures: Sequence[str]  #: Names in sigmahat.paper.figures.FIGURES.
     variants: Mapping[str, EstimatorFmu] = field(default_factory=dict)
     """Further estimators, for the figures only."""
     paper: Mapping[str, tuple[float, float]] = field(default_factory=dict)

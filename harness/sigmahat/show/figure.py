@@ -16,10 +16,21 @@ from sigmahat.show.panel import Curve, Kind, Panel
 
 def stacked(panels: Sequence[Panel]) -> Figure:
     """Draws panels one below the other, each with its own axis."""
-    figure = Figure(figsize=(7.2, 0.8 + 2.8 * len(panels)), layout="constrained")
-    for axes, panel in zip(figure.subplots(len(panels), squeeze=False)[:, 0], panels, strict=True):
-        draw(axes, panel)
-        label_x(axes, panel)
+    return in_rows([[panel] for panel in panels])
+
+
+def in_rows(rows: Sequence[Sequence[Panel]]) -> Figure:
+    """Draws rows of panels from the top down; the panels of a row share its width."""
+    figure = Figure(figsize=(7.2, 0.8 + 2.8 * len(rows)), layout="constrained")
+    grid = figure.add_gridspec(len(rows), 1)
+    for row, panels in enumerate(rows):
+        cells = grid[row].subgridspec(1, len(panels))
+        for column, panel in enumerate(panels):
+            axes = figure.add_subplot(cells[column])
+            draw(axes, panel, columns=5 if len(panels) == 1 else 2)
+            label_x(axes, panel)
+            if len(panels) > 1 and not panel.x_log:
+                axes.locator_params(axis="x", nbins=5)
     return figure
 
 
@@ -66,7 +77,11 @@ def _line(axes: Axes, curve: Curve, first: bool) -> None:
         x, y = curve.behind
         axes.plot(x, y, markersize=2, alpha=0.1, zorder=0.5, rasterized=True, **style)
     shown = np.ones(len(curve.x), np.bool_) if within is None else within
-    axes.plot(curve.x[shown], curve.y[shown], color=color, linewidth=curve.width, label=curve.label)
+    dashes: Any = (0, curve.dash) if curve.dash else "-"
+    axes.plot(
+        curve.x[shown], curve.y[shown], color=color, linewidth=curve.width, linestyle=dashes,
+        label=curve.label,
+    )  # fmt: skip
     if within is not None:
         axes.plot(curve.x, curve.y, color=color, alpha=0.35, linestyle="--")
     if curve.band is not None:

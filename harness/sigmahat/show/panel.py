@@ -37,6 +37,7 @@ class Curve:
     behind: tuple[NDArray[Any], NDArray[Any]] | None = None
     """Coordinates x and y of the points to which the line was fitted."""
     width: float = 1.4
+    dash: tuple[float, ...] = ()  # lengths of dashes and gaps, in widths of the line; empty: none
 
 
 @dataclass(frozen=True)

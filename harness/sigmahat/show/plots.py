@@ -117,7 +117,8 @@ def _draw_line(plot: figure, curve: Curve, name: str, source: ColumnDataSource) 
         x, y = curve.behind
         style = {"color": curve.color, "alpha": 0.12, "line_color": None, "size": 3}
         plot.scatter(np.float32(x), np.float32(y), name=name, **style)
-    parts = [(np.ones(len(curve.x), np.bool_), 0.22, 1.0, "solid")]
+    dash = [round(curve.width * each) for each in curve.dash] or "solid"
+    parts: list[Any] = [(np.ones(len(curve.x), np.bool_), 0.22, 1.0, dash)]
     if curve.within is not None:
         parts = [(parts[0][0], 0.08, 0.4, "dashed"), (curve.within, 0.18, 1.0, "solid")]
     for shown, of_band, of_line, dash in parts:

@@ -21,27 +21,20 @@ class Quantity:
     """A quantity with symbol and unit, for an axis of a plot or a row of a table."""
 
     words: str
-    math: str  # symbol in the figures, for Matplotlib
-    plain: str  # symbol in a page
+    plain: str  # symbol in figures and pages
     unit: str
 
 
 QUANTITIES = {
-    "sigma": Quantity("stiffness", r"\sigma", "\u03c3", "N.m/rad"),  # sigma
-    "tau_e": Quantity("flexibility torque", r"\tau_e", "τₑ", "N.m"),
-    "phi": Quantity("deformation", r"\phi", "φ", "rad"),
-    "theta_dot": Quantity("motor velocity", r"\dot\theta", "θ̇", "rad/s"),
-    "setPoint": Quantity("set-point", "s", "s", "1"),
-    "t": Quantity("time", "t", "t", "s"),
+    "sigma": Quantity("stiffness", "\u03c3", "N.m/rad"),  # sigma
+    "tau_e": Quantity("flexibility torque", "τₑ", "N.m"),
+    "phi": Quantity("deformation", "φ", "rad"),
+    "theta_dot": Quantity("motor velocity", "θ̇", "rad/s"),
+    "setPoint": Quantity("set-point", "s", "1"),
+    "t": Quantity("time", "t", "s"),
 }
 """Quantities by the output of the estimator that has their values."""
 _DIGITS = str.maketrans("23456789", "²³⁴⁵⁶⁷⁸⁹")
-
-
-def math_axis(name: str) -> str:
-    quantity = QUANTITIES[name]
-    unit = quantity.unit.replace(".", r"$\cdot$")
-    return f"{quantity.words} ${quantity.math}$ [{unit}]"
 
 
 def plain_axis(name: str) -> str:
