@@ -5,14 +5,14 @@
 # fmi3/NAME_FMI3.fmu for FMI 3.0. Both are built from modelDescription/NAME.xml, the FMI shell, the
 # given sources and the sources of the library. An FMU contains all sources and a binary for the host.
 # STRUCT is the C type that contains the variables. STORAGE tells how this type stores them, see
-# harness/sigmahat/export/c_variables.py.
+# harness/sigmahat_build/storage.py.
 function(sigmahat_add_fmu name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "STRUCT;STORAGE;LIBRARY" "SOURCES")
   set(source_dir ${PROJECT_SOURCE_DIR})
   set(dir ${PROJECT_BINARY_DIR}/fmu/${name})
   set(template ${source_dir}/modelDescription/${name}.xml)
-  file(GLOB shared CONFIGURE_DEPENDS ${source_dir}/modelDescription/*.xml ${source_dir}/harness/sigmahat/export/*.py
-       ${source_dir}/harness/sigmahat/export/*.xml)
+  file(GLOB shared CONFIGURE_DEPENDS ${source_dir}/modelDescription/*.xml ${source_dir}/harness/sigmahat_build/*.py
+       ${source_dir}/harness/sigmahat/plant_fmu/*.py ${source_dir}/harness/sigmahat/plant_fmu/*.xml)
 
   set(sources "")
   foreach(part shell fmi2 fmi3)
@@ -32,7 +32,7 @@ function(sigmahat_add_fmu name)
                 ${dir}/fmi3/buildDescription.xml ${dir}/fmi3/terminalsAndIcons.xml)
   add_custom_command(
     OUTPUT ${described} ${dir}/variables.h
-    COMMAND ${SIGMAHAT_RUN} sigmahat.export describe ${template} ${dir} ${sources}
+    COMMAND ${SIGMAHAT_RUN} sigmahat_build describe ${template} ${dir} ${sources}
             --version ${PROJECT_VERSION} --struct ${arg_STRUCT}
             --storage ${arg_STORAGE}
     DEPENDS ${shared}
@@ -53,7 +53,7 @@ function(sigmahat_add_fmu name)
       ${shown}/fmi3/terminalsAndIcons/icon.svg ${shown}/fmi3/documentation/index.html)
   add_custom_command(
     OUTPUT ${shown_files}
-    COMMAND ${SIGMAHAT_RUN} sigmahat.export document ${template} ${shown}
+    COMMAND ${SIGMAHAT_RUN} sigmahat_build document ${template} ${shown}
             --version ${PROJECT_VERSION}
     DEPENDS ${shared} ${pages}
     COMMENT "Documentation of ${name}" VERBATIM)
@@ -78,7 +78,7 @@ function(sigmahat_add_fmu name)
 
     add_custom_command(
       OUTPUT ${fmu}
-      COMMAND ${SIGMAHAT_RUN} sigmahat.export pack ${fmu} ${sources} ${interface} ${dir}/variables.h
+      COMMAND ${SIGMAHAT_RUN} sigmahat_build pack ${fmu} ${sources} ${interface} ${dir}/variables.h
               --fmi ${fmi} --described ${dir} --binary $<TARGET_FILE:${target}_binary>
               --licence ${source_dir}/LICENSE --shown ${shown}/fmi${fmi}
       DEPENDS ${target}_binary ${described} ${source_dir}/LICENSE ${shown_files} ${shared} ${headers}
@@ -105,10 +105,11 @@ function(sigmahat_add_plant name)
   set(dir ${PROJECT_BINARY_DIR}/fmu/${name})
   set(template ${PROJECT_SOURCE_DIR}/modelDescription/${name}.xml)
   file(GLOB equations CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/harness/sigmahat/plants/*.py
-       ${PROJECT_SOURCE_DIR}/harness/sigmahat/export/*.py)
+       ${PROJECT_SOURCE_DIR}/harness/sigmahat/plant_fmu/*.py
+       ${PROJECT_SOURCE_DIR}/harness/sigmahat_build/*.py)
   add_custom_command(
     OUTPUT ${dir}/plant_functions.c ${dir}/plant_functions.h
-    COMMAND ${SIGMAHAT_RUN} sigmahat.export equations ${template} ${dir}
+    COMMAND ${SIGMAHAT_RUN} sigmahat_build equations ${template} ${dir}
     DEPENDS ${equations} ${template}
             ${PROJECT_SOURCE_DIR}/modelDescription/plant_macros.xml
     COMMENT "Equations of ${name}" VERBATIM)

@@ -12,7 +12,7 @@ foreach(fmi 2 3)
     set(release ${PROJECT_BINARY_DIR}/release/${file})
     add_custom_command(
       OUTPUT ${release}
-      COMMAND ${SIGMAHAT_RUN} sigmahat.export release ${fmu} ${release}
+      COMMAND ${SIGMAHAT_RUN} sigmahat_build release ${fmu} ${release}
               --cache ${PROJECT_BINARY_DIR}/cross-compiler
       DEPENDS ${fmu} ${packages_release}
       COMMENT "Compiling ${file} for every platform" VERBATIM)
@@ -31,11 +31,11 @@ set(compiled ${native_sources} ${library_sources})
 list(TRANSFORM compiled PREPEND "--sources;")
 set(included ${SIGMAHAT_NATIVE_INCLUDES})
 list(TRANSFORM included PREPEND "--includes;")
-file(GLOB_RECURSE package CONFIGURE_DEPENDS harness/sigmahat/* harness/native/*)
+file(GLOB_RECURSE package CONFIGURE_DEPENDS harness/*)
 list(FILTER package EXCLUDE REGEX "__pycache__")
 add_custom_command(
   OUTPUT ${release}/python.stamp
-  COMMAND ${SIGMAHAT_RUN} sigmahat.export distribute ${release}/python
+  COMMAND ${SIGMAHAT_RUN} sigmahat_build distribute ${release}/python
           ${released_2} ${release}/sigmahat-awas.ssp --project ${PROJECT_SOURCE_DIR}
           ${compiled} ${included} --cache ${PROJECT_BINARY_DIR}/cross-compiler
   COMMAND ${CMAKE_COMMAND} -E touch ${release}/python.stamp
@@ -47,10 +47,10 @@ add_custom_command(
 set(bill ${release}/sigmahat.cdx.json)
 add_custom_command(
   OUTPUT ${bill}
-  COMMAND ${SIGMAHAT_RUN} sigmahat.export bill ${bill} ${release} --version ${PROJECT_VERSION}
+  COMMAND ${SIGMAHAT_RUN} sigmahat_build bill ${bill} ${release} --version ${PROJECT_VERSION}
   DEPENDS ${released_2} ${released_3} ${release}/sigmahat-awas.ssp ${release}/python.stamp
           ${release}/sigmahat-modelica.zip ${packages_release}
-          harness/sigmahat/export/bill.py
+          harness/sigmahat_build/bill.py
   COMMENT "Bill of materials" VERBATIM)
 add_custom_target(release DEPENDS ${released_2} ${released_3} ${release}/sigmahat-awas.ssp
                                   ${release}/python.stamp ${bill})

@@ -6,11 +6,12 @@ function(sigmahat_add_system ssp plant estimator)
   set(templates ${PROJECT_SOURCE_DIR}/modelDescription/system)
   file(GLOB sources CONFIGURE_DEPENDS ${templates}/* ${PROJECT_SOURCE_DIR}/harness/sigmahat/result/templates/*.ssv ${PROJECT_SOURCE_DIR}/harness/sigmahat/fmi/*.py ${PROJECT_SOURCE_DIR}/harness/sigmahat/paper/*.py
        ${PROJECT_SOURCE_DIR}/harness/sigmahat/experiments/*.py
-       ${PROJECT_SOURCE_DIR}/harness/sigmahat/export/*.py)
+       ${PROJECT_SOURCE_DIR}/harness/sigmahat/plant_fmu/archive.py
+       ${PROJECT_SOURCE_DIR}/harness/sigmahat_build/*.py)
   cmake_path(GET ssp FILENAME name)
   add_custom_command(
     OUTPUT ${ssp}
-    COMMAND ${SIGMAHAT_RUN} sigmahat.export system ${ssp} ${plant} ${estimator}
+    COMMAND ${SIGMAHAT_RUN} sigmahat_build system ${ssp} ${plant} ${estimator}
             --templates ${templates} --version ${PROJECT_VERSION}
     DEPENDS ${plant} ${estimator} ${sources}
     COMMENT "Packing ${name}" VERBATIM)

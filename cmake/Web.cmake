@@ -3,12 +3,12 @@
 set(live ${PROJECT_BINARY_DIR}/live)
 set(live_fmus ${SIGMAHAT_FMU_FOLDER}/AwasPlant.fmu ${SIGMAHAT_FMU_FOLDER}/StiffnessEstimator.fmu)
 file(GLOB live_page CONFIGURE_DEPENDS docs/live/*)
-file(GLOB live_sources CONFIGURE_DEPENDS harness/sigmahat/export/web.py harness/sigmahat/export/system.py
+file(GLOB live_sources CONFIGURE_DEPENDS harness/sigmahat_build/web.py harness/sigmahat_build/system.py
      harness/sigmahat/paper/*.py harness/sigmahat/experiments/scenario.py
      harness/sigmahat/guess/vocabulary.toml)
 add_custom_command(
   OUTPUT ${live}/fmus.js
-  COMMAND ${SIGMAHAT_RUN} sigmahat.export live ${live} ${live_fmus}
+  COMMAND ${SIGMAHAT_RUN} sigmahat_build live ${live} ${live_fmus}
           --page ${PROJECT_SOURCE_DIR}/docs/live --cache ${PROJECT_BINARY_DIR}/cross-compiler
   DEPENDS ${live_fmus} ${live_page} ${live_sources}
           ${packages_release} ${packages_docs}

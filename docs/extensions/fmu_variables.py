@@ -16,8 +16,9 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-from sigmahat.export import templates
-from sigmahat.export.documentation import table as variables_of
+from sigmahat.plant_fmu.model_description import UNITS
+from sigmahat_build.description_template import render
+from sigmahat_build.documentation import table as variables_of
 
 COLUMNS = {"name": 20, "unit": 10, "start": 15, "range": 15, "description": 40}
 OBJECT = "fmu-variable"
@@ -33,9 +34,9 @@ class FmuVariables(SphinxDirective):
         fmu = self.arguments[0]
         template = Path(self.env.srcdir).parent / "modelDescription" / f"{fmu}.xml"
         # A template extends and includes others.
-        for path in (*template.parent.glob("*.xml"), templates.UNITS):
+        for path in (*template.parent.glob("*.xml"), UNITS):
             self.env.note_dependency(path)
-        root = templates.render(template, self.config.version)
+        root = render(template, self.config.version)
         return [
             self._section(fmu, title, rows)
             for causality in ("input", "output", "parameter")

@@ -14,8 +14,6 @@ from .experiments.scenario import Comparison as Comparison
 from .experiments.scenario import Scenario as Scenario
 from .experiments.scenario import Sine as Sine
 from .experiments.scenario import Sines as Sines
-from .export.plant_fmu import PlantVariable as PlantVariable
-from .export.plant_fmu import write_plant_fmu as write_plant_fmu
 from .fmi.installed import fmu as fmu
 from .fmi.instance import FmuError as FmuError
 from .fmi.master import EstimatorFmu as EstimatorFmu
@@ -27,6 +25,8 @@ from .motor.identify import identify as identify
 from .motor.quantities import Identified as Identified
 from .motor.quantities import Quantity as Quantity
 from .paper.scenarios import scenario as scenario
+from .plant_fmu.plant_fmu import PlantVariable as PlantVariable
+from .plant_fmu.plant_fmu import write_plant_fmu as write_plant_fmu
 from .plants.equations import PlantEquations as PlantEquations
 from .plants.equations import encoder as encoder
 from .recording.configuration import Configuration as Configuration

@@ -13,7 +13,7 @@ import sigmahat
 from c_library import Library
 from c_sources import REPOSITORY
 from fmi_runs import limits
-from sigmahat.export import c_variables
+from sigmahat_build import parameter_table
 
 
 @pytest.fixture(scope="module")
@@ -27,7 +27,7 @@ def listed() -> list[Any]:
 def test_the_table_in_c_is_made_from_the_list(tmp_path: Path) -> None:
     """If not: cmake --build build --target parameter_table."""
     made, name = tmp_path / "parameters.inc", "StiffnessEstimator.xml"
-    c_variables.write_parameters(REPOSITORY / "modelDescription" / name, made)
+    parameter_table.write(REPOSITORY / "modelDescription" / name, made)
     assert (REPOSITORY / "c" / "parameters.inc").read_bytes() == made.read_bytes()
 
 

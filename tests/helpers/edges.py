@@ -18,7 +18,8 @@ from hypothesis import strategies as st
 
 from c_library import MEASUREMENTS, REALS, Array, Library, compile_library
 from c_sources import REPOSITORY
-from sigmahat.export.templates import items, render, variables
+from sigmahat.plant_fmu.model_description import items, variables
+from sigmahat_build.description_template import render
 
 EPSILON = {"double": 2.0**-53, "float": 2.0**-24}
 """Unit roundoff."""

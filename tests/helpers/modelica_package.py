@@ -8,7 +8,7 @@ import rumoca
 
 import sigmahat
 from c_sources import REPOSITORY
-from sigmahat.export.modelica import KEYWORDS, contents
+from sigmahat_build.modelica import KEYWORDS, contents
 
 _FOLDER = tempfile.TemporaryDirectory()
 PACKAGE = Path(_FOLDER.name) / "Sigmahat"

@@ -17,9 +17,9 @@ import sigmahat
 from controllers import run
 from gate import need
 from recordings import one_seed
-from sigmahat.export.modelica import KEYWORDS
 from sigmahat.fmi.instance import Fmu
 from sigmahat.fmi.master import Plant, simulate
+from sigmahat_build.modelica import KEYWORDS
 
 DRIVERS = Path(__file__).parents[1] / "drivers" / "modelica"
 FLAGS = ["-std=c99", "-O2", "-g", "-ffp-contract=off", "-fPIC"]

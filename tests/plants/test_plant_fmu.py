@@ -13,7 +13,7 @@ from fmu_manipulation_toolbox.cli.fmutool import fmutool
 
 import sigmahat
 from sigmahat import PlantEquations, PlantVariable, encoder, write_plant_fmu
-from sigmahat.export import plant_codegen
+from sigmahat.plant_fmu import plant_codegen
 
 VARIABLES = {
     "force": PlantVariable("N.m", "Torque"),
@@ -156,7 +156,7 @@ def test_a_compiler_that_is_missing(tmp_path: Path, monkeypatch: pytest.MonkeyPa
 def test_code_is_the_same_in_every_process(tmp_path: Path) -> None:
     texts, template = [], Path(__file__).parents[2] / "modelDescription" / "AwasPlant.xml"
     for seed in ("1", "2"):
-        command = [sys.executable, "-m", "sigmahat.export", "equations"]
+        command = [sys.executable, "-m", "sigmahat_build", "equations"]
         environment = {**os.environ, "PYTHONHASHSEED": seed}
         subprocess.run([*command, template, tmp_path / seed], check=True, env=environment)
         names = ("plant_functions.c", "plant_functions.h")

@@ -19,7 +19,8 @@ import fmi_functions
 import sigmahat
 from gate import missing, need
 from released_fmus import FMUS, TWINS, Run
-from sigmahat.export import archive, cross_compiler
+from sigmahat.plant_fmu import archive
+from sigmahat_build import cross_compiler
 
 run_of = cache(Run)
 

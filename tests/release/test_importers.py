@@ -12,7 +12,8 @@ import pytest
 from c_programs import DRIVERS, FMU_SOURCES
 from gate import missing, need
 from released_fmus import STEP, Run
-from sigmahat.export.cross_compiler import HEADERS, compile_files
+from sigmahat.plant_fmu.compiler import HEADERS
+from sigmahat_build.cross_compiler import compile_files
 
 run_of = cache(Run)
 

@@ -17,7 +17,7 @@ from cyclonedx.validation.json import JsonStrictValidator
 import sigmahat
 from controllers import run
 from released_fmus import FMUS
-from sigmahat.export import bill, distribution, modelica
+from sigmahat_build import bill, distribution, modelica
 
 REPOSITORY = Path(__file__).parents[2]
 OLD = 86400.0  # [s] since 1970
@@ -135,6 +135,7 @@ def test_a_wheel_contains_the_released_fmus_and_its_library(tag: str, released: 
         }
         assert "sigmahat/py.typed" in archive.namelist()
         assert not any("__pycache__" in name for name in archive.namelist())
+        assert all(name.startswith(("sigmahat/", "sigmahat-")) for name in archive.namelist())
     native = {f"sigmahat_native{EXTENSIONS[tag]}"}
     assert files.keys() == {*(f"{name}.fmu" for name in FMUS), "sigmahat-awas.ssp", *native}
     for name in files.keys() - native:

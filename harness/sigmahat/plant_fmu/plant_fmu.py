@@ -4,10 +4,7 @@ All parts that do not depend on the equations are taken from ``AwasPlant.fmu`` a
 Only sigmahat with its extra ``plants`` and a C compiler are needed.
 """
 
-import os
-import shlex
 import shutil
-import subprocess
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,12 +15,18 @@ from xml.etree.ElementTree import Element
 import casadi as ca
 import fmpy
 
-from sigmahat.export import archive, description, plant_codegen, templates
-from sigmahat.export.c_variables import SAMPLE_PERIOD, SEED, is_of_every_plant
-from sigmahat.export.cross_compiler import FLAGS, HEADERS
 from sigmahat.fmi.installed import fmu as installed_fmu
 from sigmahat.fmi.installed import version
 from sigmahat.fmi.unknown_name import unknown
+from sigmahat.plant_fmu import archive, model_description, plant_codegen
+from sigmahat.plant_fmu.c_variables import (
+    SAMPLE_PERIOD,
+    SEED,
+    c_table,
+    is_of_every_plant,
+    storage_in_arrays,
+)
+from sigmahat.plant_fmu.compiler import compile_folder
 from sigmahat.plants.equations import PlantEquations
 
 
@@ -41,15 +44,15 @@ def describe(
 ) -> None:
     """Changes the model description of another plant into the description of this plant.
 
-    The result is like a rendered template of ``modelDescription/``: ``description.complete`` adds
-    the parts that follow from these data.
+    The result is like a rendered template of ``modelDescription/``: the parts that follow from
+    these data are added by `model_description.complete`.
 
     Raises ValueError for a plant name that is no name in C, and as `write_plant_fmu` for variables.
     """
     if not (plant.name.isidentifier() and plant.name.isascii()):
         raise ValueError(f"plant {plant.name!r}: expected a name that is an identifier in C")
     (defined,) = description.findall("UnitDefinitions")
-    defined[:] = ElementTree.parse(templates.UNITS).getroot()
+    defined[:] = ElementTree.parse(model_description.UNITS).getroot()
     _check(plant, variables, [unit.attrib["name"] for unit in defined])
     description.set("modelName", plant.name)
     for attribute in ("guid", "author", "copyright", "license", "version"):
@@ -73,8 +76,8 @@ def _check(
     for name in variables:
         if name not in names:
             raise ValueError(unknown(f"variable of {plant.name}", name, names))
-    for kind, own in kinds.items():
-        for name in own:
+    for kind, names_of_kind in kinds.items():
+        for name in names_of_kind:
             if name not in variables:
                 raise ValueError(f"{plant.name}: expected an entry for {kind} {name} in variables")
             unit = variables[name].unit
@@ -128,26 +131,6 @@ _NOISE = f"""<ModelVariables>
 </ModelVariables>"""
 
 
-def compile_folder(sources: Path, binary: Path) -> None:
-    """Compiles every C file of a folder into a shared library.
-
-    Raises RuntimeError if no compiler is found (gcc or clang, or the compiler in CC), or if the
-    compiler fails.
-    """
-    compiler = os.environ.get("CC") or next(filter(shutil.which, ("cc", "gcc", "clang")), None)
-    if compiler is None:
-        raise RuntimeError("no C compiler found: install gcc or clang, or name one in CC")
-    files = sorted(file.name for file in sources.glob("*.c"))
-    arguments = [*FLAGS, f"-I{HEADERS}", *files, "-lm", "-o", str(binary.resolve())]
-    try:
-        command = [*shlex.split(compiler), *arguments]
-        done = subprocess.run(command, cwd=sources, capture_output=True, text=True)
-    except OSError as error:
-        raise RuntimeError(f"CC={compiler}: {error.strerror}") from error
-    if done.returncode:
-        raise RuntimeError(f"{compiler} could not compile the plant:\n{done.stderr}")
-
-
 def write_plant_fmu(
     plant: PlantEquations, variables: Mapping[str, PlantVariable], fmu: str | Path
 ) -> None:
@@ -174,11 +157,14 @@ def write_plant_fmu(
         xml = folder / "modelDescription.xml"
         root = ElementTree.parse(xml).getroot()
         describe(plant, variables, root)
-        description.write_completed(root, "sh_plant", "arrays", xml, sources / "variables.h")
+        guid = model_description.complete(root)
+        table = c_table(root, "sh_plant", storage_in_arrays(root), guid)
+        (sources / "variables.h").write_text(table, encoding="utf-8")
+        model_description.write_xml(root, xml)
         plant_codegen.write(
             plant, list(plant.parameters), list(plant.inputs), list(plant.outputs), sources
         )
-        place = folder / "binaries" / fmpy.platform
-        place.mkdir(parents=True)
-        compile_folder(sources, place / f"{plant.name}{fmpy.sharedLibraryExtension}")
+        binaries = folder / "binaries" / fmpy.platform
+        binaries.mkdir(parents=True)
+        compile_folder(sources, binaries / f"{plant.name}{fmpy.sharedLibraryExtension}")
         archive.write(Path(fmu), archive.files_in(folder))

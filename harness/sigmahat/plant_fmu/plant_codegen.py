@@ -1,13 +1,10 @@
 """Generates the C code of a plant: ``plant_functions.c`` and ``plant_functions.h``."""
 
-import re
 from collections.abc import Iterable, Sequence
-from importlib import import_module
 from pathlib import Path
 
 import casadi as ca
 
-from sigmahat.export import c_variables, templates
 from sigmahat.plants.equations import PlantEquations
 
 
@@ -132,7 +129,7 @@ def write(
     folder: Path,
 ) -> None:
     """Write the C code of a plant into a folder; variables as in `functions`."""
-    generated = {each.name(): each for each in functions(plant, parameters, inputs, outputs)}
+    generated = {f.name(): f for f in functions(plant, parameters, inputs, outputs)}
     generator = ca.CodeGenerator(
         "plant_functions", {"casadi_int": "int", "with_export": False, "verbose": False}
     )
@@ -166,25 +163,15 @@ def write(
     (folder / "plant_functions.c").write_text(_QUIET + generator.dump(), encoding="utf-8")
 
 
-def _compare(plant: PlantEquations, kind: str, own: Iterable[str], wanted: Iterable[str]) -> None:
-    """Raises ValueError unless the names in the equations are exactly the names in `wanted`."""
-    own, wanted = set(own), set(wanted)
-    if not own:
+def _compare(
+    plant: PlantEquations, kind: str, in_equations: Iterable[str], described: Iterable[str]
+) -> None:
+    """Raises ValueError unless the names in the equations are exactly the names described."""
+    defined = set(in_equations)
+    expected = set(described)
+    if not defined:
         raise ValueError(f"{plant.name}: expected at least one {kind}, got none")
-    for name in sorted(wanted - own):
+    for name in sorted(expected - defined):
         raise ValueError(f"{plant.name}: the equations have no {kind} {name}")
-    for name in sorted(own - wanted):
+    for name in sorted(defined - expected):
         raise ValueError(f"{plant.name}: the model description has no {kind} {name}")
-
-
-def write_own(template: Path, folder: Path) -> None:
-    """Write the code of a plant of this package, variables in the order of its template.
-
-    The equations of ``FlexibleJointPlant.xml`` are in ``sigmahat.plants.flexible_joint``.
-    """
-    words = re.findall("[A-Z][a-z]*", template.stem.removesuffix("Plant"))
-    plant = import_module(f"sigmahat.plants.{'_'.join(words).lower()}").plant
-    root = templates.render(template, version="")
-    places = c_variables.storage_in_arrays(root)
-    p, u, y = ([n for n, place in places.items() if place.startswith(f"{a}[")] for a in "puy")
-    write(plant, p, u, y, folder)

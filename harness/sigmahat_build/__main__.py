@@ -1,4 +1,4 @@
-"""Runs build steps of the FMUs for CMake; each step is a process with few imports."""
+"""Runs the steps of the build for CMake; each step is a process with few imports."""
 
 from importlib import import_module
 from pathlib import Path
@@ -7,9 +7,9 @@ from typing import Any
 import click
 
 _STEPS = {
-    "describe": "description.write template out sources... --version --struct --storage",
-    "equations": "plant_codegen.write_own template folder",
-    "pack": "archive.pack fmu sources... --fmi --described --binary --licence --shown",
+    "describe": "descriptions.write template out sources... --version --struct --storage",
+    "equations": "plant_functions.write template folder",
+    "pack": "packing.pack fmu sources... --fmi --described --binary --licence --shown",
     "document": "documentation.write template out --version",
     "system": "system.write ssp plant estimator --templates --version",
     "release": "cross_compiler.release fmu out --cache",
@@ -17,7 +17,7 @@ _STEPS = {
     "bill": "bill.write out release --version",
     "live": "web.write out fmus... --page --cache",
     "amalgamate": "amalgamation.write out sources... --interface --licence --version",
-    "parameters": "c_variables.write_parameters template out",
+    "parameters": "parameter_table.write template out",
     "modelica": "modelica.write out library sources... --descriptions --licence --version",
 }
 """The function of each step, and its arguments; an argument with "..." may be repeated."""
@@ -29,8 +29,9 @@ def _step(name: str, spec: str) -> click.Command:
     function, *arguments = spec.split()
     module, _, called = function.partition(".")
     parameters: list[click.Parameter] = []
-    for each in arguments:
-        argument, several = each.removesuffix("..."), each.endswith("...")
+    for listed in arguments:
+        argument = listed.removesuffix("...")
+        several = listed.endswith("...")
         kind = _KINDS.get(argument, click.Path(path_type=Path))
         if argument.startswith("--"):
             parameters.append(click.Option([argument], type=kind, required=True, multiple=several))
@@ -38,9 +39,9 @@ def _step(name: str, spec: str) -> click.Command:
             parameters.append(click.Argument([argument], type=kind, nargs=-1 if several else 1))
 
     def run(**values: Any) -> None:
-        getattr(import_module(f"sigmahat.export.{module}"), called)(**values)
+        getattr(import_module(f"sigmahat_build.{module}"), called)(**values)
 
     return click.Command(name, params=parameters, callback=run)
 
 
-click.Group(commands=[_step(*each) for each in _STEPS.items()])()
+click.Group(commands=[_step(name, spec) for name, spec in _STEPS.items()])()

@@ -35,26 +35,26 @@ def write(out: Path, release: Path, version: str) -> None:
 
     Raises FileNotFoundError if the folder has no wheel.
     """
-    files = sorted(each for each in release.rglob("*") if each.suffix in _ARCHIVES)
+    files = sorted(path for path in release.rglob("*") if path.suffix in _ARCHIVES)
     product = _component("sigmahat", version, ComponentType.FRAMEWORK, _BSD_2, "pkg:pypi/sigmahat")
     bom = Bom(metadata=BomMetaData(component=product))
     bom.metadata.tools = ToolRepository(components=map(_tool, _BUILD_TOOLS))
     headers = _component("FMI headers", None, ComponentType.LIBRARY, _BSD_2)
     source = Property(name="sigmahat:from", value=f"fmpy {installed_version('fmpy')}")
     headers.properties.add(source)
-    own = _component("C sources of sigmahat", version, ComponentType.LIBRARY, _BSD_2)
+    c_sources = _component("C sources of sigmahat", version, ComponentType.LIBRARY, _BSD_2)
     casadi = "equations that CasADi wrote as C"
     equations = _component(casadi, version, ComponentType.LIBRARY, _BSD_2)
     packages = list(_packages(files))
-    for each in (headers, own, equations, *packages):
-        bom.components.add(each)
+    for component in (headers, c_sources, equations, *packages):
+        bom.components.add(component)
     for file in files:
         name = file.relative_to(release).as_posix()
         entry = _component(name, None, ComponentType.FILE, None)
         entry.hashes.add(HashType(alg=HashAlgorithm.SHA_256, content=sha256(file)))
         bom.components.add(entry)
         bom.register_dependency(product, [entry])
-        bom.register_dependency(entry, _contents(file, own, headers, equations, packages))
+        bom.register_dependency(entry, _contents(file, c_sources, headers, equations, packages))
     digest = hashlib.sha256("".join(map(sha256, files)).encode()).hexdigest()
     bom.serial_number = uuid5(NAMESPACE_URL, f"sigmahat {version} {digest}")
     bom.metadata.timestamp = None  # type: ignore[assignment] # the schema does not ask for one
@@ -76,8 +76,8 @@ def _component(
 
 
 def _tool(name: str) -> Component:
-    found = installed_version(name)
-    tool = _component(name, found, ComponentType.APPLICATION, None, f"pkg:pypi/{name}")
+    version = installed_version(name)
+    tool = _component(name, version, ComponentType.APPLICATION, None, f"pkg:pypi/{name}")
     tool.bom_ref.value = f"tool {name}"
     return tool
 
@@ -101,14 +101,18 @@ def _packages(files: Iterable[Path]) -> Iterable[Component]:
 
 
 def _contents(
-    file: Path, own: Component, headers: Component, equations: Component, packages: list[Component]
+    file: Path,
+    c_sources: Component,
+    headers: Component,
+    equations: Component,
+    packages: list[Component],
 ) -> list[Component]:
     """Lists the components in a file of the release, and the packages that a wheel requires."""
     if file.suffix == ".zip":
-        return [own]
+        return [c_sources]
     if file.suffix == ".fmu":
         with ZipFile(file) as archive:
             is_plant = any(name.endswith("/plant_functions.c") for name in archive.namelist())
-        return [own, headers, *([equations] if is_plant else [])]
+        return [c_sources, headers, *([equations] if is_plant else [])]
     of_python = packages if file.suffix in (".whl", ".gz") else []
-    return [own, *([] if file.suffix == ".gz" else [headers, equations]), *of_python]
+    return [c_sources, *([] if file.suffix == ".gz" else [headers, equations]), *of_python]

@@ -14,12 +14,13 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from sigmahat import guess
-from sigmahat.export import cross_compiler
-from sigmahat.export.system import torques
 from sigmahat.files import toml_file
 from sigmahat.fmi.instance import Fmu, Value
 from sigmahat.paper.scenarios import scenario
+from sigmahat.plant_fmu.compiler import CODE, HEADERS
 from sigmahat.recording.configuration import ANOTHER_ROBOT, ANY_COULOMB
+from sigmahat_build import cross_compiler
+from sigmahat_build.system import torques
 
 FUNCTIONS = (
     *("fmi2Instantiate", "fmi2SetupExperiment", "fmi2EnterInitializationMode"),
@@ -64,8 +65,8 @@ def _described(fmu: Fmu, callbacks: Path, cache: Path) -> dict[str, Any]:
     with TemporaryDirectory() as scratch:
         folder, binary = Path(fmu.folder), Path(scratch) / "fmu.wasm"
         arguments: list[str | Path] = [
-            *(_KIND, *cross_compiler.CODE),
-            *(f"-I{each.resolve()}" for each in (folder / "sources", cross_compiler.HEADERS)),
+            *(_KIND, *CODE),
+            *(f"-I{each.resolve()}" for each in (folder / "sources", HEADERS)),
             *(source.resolve() for source in cross_compiler.source_files(folder)),
             *(callbacks.resolve(), "-lm", "-o", binary),
             *(f"-Wl,--export={name}" for name in FUNCTIONS),

@@ -14,7 +14,8 @@ from xml.etree.ElementTree import Element
 
 import jinja2
 
-from sigmahat.export import archive, templates
+from sigmahat.plant_fmu import archive, model_description
+from sigmahat_build.description_template import render
 
 KEYWORDS = {"initial": "init", "model": "nominal"}
 """Modelica names of groups of parameters whose names in the FMUs are keywords of Modelica."""
@@ -55,8 +56,8 @@ class Variable:
 
     def declared(self, *modifiers: str, name: str = "", value: str = "") -> str:
         """Formats a Modelica declaration: type, name, modifiers, range and description."""
-        every = ", ".join([*modifiers, *self.limits])
-        text = f"{self.type} {name or self.name}{self.size}{f'({every})' if every else ''}"
+        modified = ", ".join([*modifiers, *self.limits])
+        text = f"{self.type} {name or self.name}{self.size}{f'({modified})' if modified else ''}"
         return f'{text}{f" = {value}" if value else ""} "{self.description}"'
 
 
@@ -82,15 +83,16 @@ def contents(library: Path, descriptions: Path, version: str) -> dict[str, bytes
     )
     text = (library / "Types.mo.jinja").read_text(encoding="utf-8")
     types = {unit: name for name, unit in re.findall(r'type (\w+) = Real \(.*unit="(.+?)"', text)}
-    root = cache(lambda fmu: templates.render(descriptions / f"{fmu}.xml", version))
+    root = cache(lambda fmu: render(descriptions / f"{fmu}.xml", version))
 
     @cache
     def variables(fmu: str, causality: str) -> list[Variable]:
-        found = (_variable(root(fmu), each, types) for each in templates.variables(root(fmu)))
-        return [each for each in found if each is not None and each.causality == causality]
+        listed = model_description.variables(root(fmu))
+        declared = (_variable(root(fmu), variable, types) for variable in listed)
+        return [v for v in declared if v is not None and v.causality == causality]
 
-    made = {}
-    for file in sorted(each for each in library.rglob("*") if each.is_file()):
+    files = {}
+    for file in sorted(path for path in library.rglob("*") if path.is_file()):
         name = file.relative_to(library).as_posix()
         if file.name == "macros.jinja":
             continue
@@ -98,10 +100,10 @@ def contents(library: Path, descriptions: Path, version: str) -> dict[str, bytes
             enumerations = root("StiffnessEstimator").findall("TypeDefinitions/SimpleType")
             known: dict[str, Any] = {"variables": variables, "enumerations": enumerations}
             template = environment.get_template(name, globals={**known, "version": version})
-            made[name.removesuffix(".jinja")] = template.render().encode()
+            files[name.removesuffix(".jinja")] = template.render().encode()
         else:
-            made[name] = file.read_bytes()
-    return made
+            files[name] = file.read_bytes()
+    return files
 
 
 def _variable(root: Element, variable: Element, types: dict[str, str]) -> Variable | None:
@@ -114,7 +116,7 @@ def _variable(root: Element, variable: Element, types: dict[str, str]) -> Variab
     start = kind.get("start", "")
     if kind.tag == "Enumeration":
         declared = kind.attrib["declaredType"]
-        names = {item["value"]: item["name"] for item in templates.items(root, kind)}
+        names = {item["value"]: item["name"] for item in model_description.items(root, kind)}
         type_name, start = f"Types.{declared}", start and f"Types.{declared}.{names[start]}"
     elif kind.tag == "Real" and not index and kind.get("unit"):
         type_name = f"Types.{types[kind.attrib['unit']]}"
@@ -154,7 +156,7 @@ def write(
     Equal files give equal bytes. Raises ``FileNotFoundError`` for a file that is missing.
     """
     folder = f"{library.name} {version}"
-    made = contents(library, descriptions, version)
-    files: dict[str, Path | bytes] = {f"{folder}/{name}": text for name, text in made.items()}
+    package = contents(library, descriptions, version)
+    files: dict[str, Path | bytes] = {f"{folder}/{name}": text for name, text in package.items()}
     files |= {f"{folder}/Resources/C-Sources/{file.name}": file for file in sources}
     archive.write(out, {**files, f"{folder}/LICENSE": licence})

@@ -10,10 +10,10 @@ from typing import Any
 
 from sigmahat import result
 from sigmahat.experiments.scenario import Scenario
-from sigmahat.export import archive
 from sigmahat.files.templates import environment
 from sigmahat.fmi.instance import Fmu, Value
 from sigmahat.paper.scenarios import scenario
+from sigmahat.plant_fmu import archive
 
 
 def write(ssp: Path, plant: Path, estimator: Path, templates: Path, version: str) -> None:

@@ -12,8 +12,9 @@ from pathlib import Path
 from typing import Any
 from xml.etree.ElementTree import Element
 
-from sigmahat.export import templates
 from sigmahat.files.templates import environment
+from sigmahat.plant_fmu import model_description
+from sigmahat_build.description_template import render
 
 _ICONS = {
     2: ("model.png", "documentation/icon.svg"),
@@ -25,9 +26,9 @@ _ICONS = {
 def write(template: Path, out: Path, version: str) -> None:
     """Write the files into the folders ``fmi2`` and ``fmi3`` of ``out``, by their names in the FMU.
 
-    Raises as `templates.render` does, and ``FileNotFoundError`` for an FMU without an icon.
+    Raises as `render` does, and ``FileNotFoundError`` for an FMU without an icon.
     """
-    root = templates.render(template, version)
+    root = render(template, version)
     (experiment,) = root.findall("DefaultExperiment")
     page = environment(template.parent / "documentation").get_template("page.html")
     for fmi, icons in _ICONS.items():
@@ -53,7 +54,7 @@ def table(root: Element, causality: str) -> dict[str, Any]:
     """Creates table rows of the variables of one causality, and of array elements by array."""
     single: list[dict[str, Any]] = []
     arrays: dict[str, list[dict[str, Any]]] = {}
-    for variable in templates.variables(root):
+    for variable in model_description.variables(root):
         if variable.attrib["causality"] == causality:
             array = re.fullmatch(r"(.+)\[.+\]", variable.attrib["name"])
             rows = arrays.setdefault(array[1], []) if array else single
@@ -72,7 +73,7 @@ def _row(root: Element, variable: Element) -> dict[str, Any]:
             value = float(kind.attrib["start"]) * float(display.attrib["factor"])
             shown = f" ({value:.6g} {display.attrib['name']})"
     elif kind.tag == "Enumeration":
-        choices = templates.items(root, kind)
+        choices = model_description.items(root, kind)
         names = {item["value"]: item["name"] for item in choices}
         start = names[start] if start else ""  # an output has no start value
         limits = "see items"

@@ -11,7 +11,8 @@ from typing import Any
 
 import fmpy
 
-from sigmahat.export import archive
+from sigmahat.plant_fmu import archive
+from sigmahat.plant_fmu.compiler import FLAGS, HEADERS
 
 PLATFORMS = {
     "linux64": ("x86_64-linux-gnu.2.17", ".so"),
@@ -28,14 +29,6 @@ PLATFORMS_3 = {
     "aarch64-darwin": ("aarch64-macos.11.0", ".dylib"),
 }
 """Platforms of FMI 3.0, which also has names for processors of the ARM family."""
-
-# Without fused operations (contraction), all machines compute the same numbers. Symbols and
-# debug information would contain paths (-s removes both).
-CODE = ("-std=c99", "-O2", "-ffp-contract=off", "-fvisibility=hidden", "-s")
-FLAGS = (*CODE, "-fPIC", "-shared")
-
-
-HEADERS = Path(fmpy.__file__).parent / "c-code"  # folder of the header files of FMI
 
 
 def compile_files(target: str, arguments: Iterable[str | Path], cache: Path, cwd: Path) -> None:

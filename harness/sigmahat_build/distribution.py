@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from sigmahat.export.cross_compiler import PLATFORMS, compile_shared
+from sigmahat_build.cross_compiler import PLATFORMS, compile_shared
 
 TAGS = {
     "linux64": "manylinux_2_17_x86_64",
@@ -57,8 +57,8 @@ def write(
         kind.write_text(text, encoding="utf-8")
         folder = tree / "sigmahat" / "fmus"
         folder.mkdir()
-        for each in contents:
-            shutil.copy(each, folder)
+        for file in contents:
+            shutil.copy(file, folder)
         for platform in PLATFORMS:
             stem = folder / "sigmahat_native"
             library = compile_shared(sources, includes, stem, platform, cache)
@@ -72,5 +72,6 @@ def write(
 
 
 def _python(project: Path, *arguments: str | Path) -> None:
-    command, given = [sys.executable, *arguments], {**os.environ, "SOURCE_DATE_EPOCH": _EPOCH}
-    subprocess.run(command, cwd=project, env=given, check=True, stdout=subprocess.DEVNULL)
+    command = [sys.executable, *arguments]
+    environment = {**os.environ, "SOURCE_DATE_EPOCH": _EPOCH}
+    subprocess.run(command, cwd=project, env=environment, check=True, stdout=subprocess.DEVNULL)

@@ -1,1 +1,0 @@
-"""Creates the products of the build: FMUs, their documentation, and the amalgamation."""
