@@ -1,6 +1,5 @@
-"""Builds the products of the project: FMUs and their documentation, the C library in one pair of
-files, the system, the Modelica package, the page in the browser, and the files of a release.
+"""Builds what is released: FMUs, system, C library as one pair of files, Modelica package, wheels.
 
-CMake runs each step as ``python -m sigmahat_build STEP``. These modules use the package `sigmahat`,
-which does not use them: pip installs the products, and not the build.
+CMake runs each step as ``python -m sigmahat_build STEP``. The steps use the package `sigmahat`, and
+the package does not use them: pip installs what they make, and not the steps themselves.
 """
