@@ -85,6 +85,7 @@ int sh_estimator_evaluate(const sh_estimator *estimator, const sh_parameters *p,
             return 0;
         }
     }
-    point->tau_e = point->tau_e_std = point->sigma = point->sigma_std = INFINITY;
+    point->tau_e = point->tau_e_std = INFINITY;
+    point->sigma = point->sigma_std = point->sigma_per_gain = INFINITY;
     return 1;
 }

@@ -1,6 +1,7 @@
 # The C library of the Python package runs the estimator over samples and over arrays. Python calls this
 # library with ctypes, so it depends on the platform, but not on the version of Python.
 add_library(sigmahat_native MODULE harness/native/sample_loop.c harness/native/joints.c
+            harness/native/saved_joints.c
             ${PROJECT_BINARY_DIR}/fmu/StiffnessEstimator/variables.h)
 get_target_property(library_folders sigmahat_c INCLUDE_DIRECTORIES)
 set(SIGMAHAT_NATIVE_INCLUDES ${PROJECT_BINARY_DIR}/fmu/StiffnessEstimator

@@ -13,7 +13,7 @@ from scipy import signal
 
 import sigmahat
 from rivals.records import STD_B, STD_D, STD_GAIN, Array, Estimate, JointLog
-from sigmahat.fmi.instance import Value
+from sigmahat.fmi.model import Value
 
 CONFIDENT = 0.1
 """Least squares is confident while its standard deviation is below this share of a positive

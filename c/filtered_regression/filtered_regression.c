@@ -64,7 +64,7 @@ static sh_real of_errors(const sh_regression_state *state, const sh_parameters *
 /* tau_e = F' beta, (21), and sigma = dF' beta, (23), with the curve rls.eta_0. Both variances are the sum of c' P c,
  * (s_g d(c' beta)/dg)^2 for the gain g of the torque (point 8), and a term for errors of phi (point 5). The variance of
  * sigma also contains the uncertainty of the slope near a knee [(N.m/rad)2] (point 6). As an approximation, the share
- * by which errors of phi change sigma is also used for the torque. Returns d sigma / dg.
+ * by which errors of phi change sigma is also used for the torque. Returns d sigma / dg, which may overflow.
  */
 static sh_real evaluate_at(const sh_regression_state *state, const sh_parameters *p,
                            const sh_joint_point *at, const sh_variances *variances, sh_real knees,
@@ -87,6 +87,10 @@ static sh_real evaluate_at(const sh_regression_state *state, const sh_parameters
     point->sigma_std = sh_std_deviation(
         variances->second + sh_square(gain * stiffness_per_gain) +
         of_errors(state, p, attenuation * point->sigma, variances->second) + knees);
+    point->sigma_per_gain =
+        sh_fabs(point->sigma) > 0
+            ? sh_limited(stiffness_per_gain / sh_fabs(point->sigma), SH_LARGEST_OUTPUT)
+            : 0;
     return stiffness_per_gain;
 }
 
@@ -246,9 +250,7 @@ static int report(sh_regression_state *state, const sh_parameters *p, sh_joint_p
     estimate->sigma_std = point.sigma_std;
     estimate->tau_e = point.tau_e;
     estimate->tau_e_std = point.tau_e_std;
-    estimate->sigma_per_gain = sh_fabs(point.sigma) > 0
-                                   ? sh_limited(per_gain / sh_fabs(point.sigma), SH_LARGEST_OUTPUT)
-                                   : 0;
+    estimate->sigma_per_gain = point.sigma_per_gain;
     estimate->tau_e_residual = y;
     estimate->phi = at->phi;
     estimate->theta_dot = at->filtered.first[SH_FILTER_THETA];

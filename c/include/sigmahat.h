@@ -305,6 +305,8 @@ typedef struct {
     sh_real tau_e_std; /* its std deviation by the model of the method; may be infinite [N.m] */
     sh_real sigma;     /* stiffness, (23) [N.m/rad] */
     sh_real sigma_std; /* its std deviation; may be infinite [N.m/rad] */
+    sh_real sigma_per_gain; /* relative change of sigma with a relative change of the gain of the
+                               torque [1] */
 } sh_point;
 
 /* A parameter outside its range. */

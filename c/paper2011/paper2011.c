@@ -42,6 +42,7 @@ static void evaluate_regressors(const sh_paper2011_state *state, const sh_parame
     sh_scalar_products(state->rls.eta, F, dF, p->rls.n * p->rls.m, &point->tau_e, &point->sigma);
     point->tau_e_std = sh_std_deviation(unit * variance);
     point->sigma_std = sh_std_deviation(unit * sh_ud_factor_variance(&state->rls.P, dF));
+    point->sigma_per_gain = 1;
 }
 
 static void evaluate_paper2011(const sh_estimator *estimator, const sh_parameters *p, sh_real phi,
@@ -71,7 +72,7 @@ static void report_paper2011(const sh_paper2011_state *state, const sh_parameter
     estimate->D_theta_hat = p->motor.D_theta;
     estimate->B_hat = p->motor.B;
     estimate->misfit = 1;
-    estimate->sigma_per_gain = 1;
+    estimate->sigma_per_gain = point->sigma_per_gain;
     estimate->doubt = SH_DOUBT_NO_CLAIM;
 }
 

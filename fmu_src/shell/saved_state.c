@@ -7,12 +7,10 @@
 #include <stdint.h>
 #include <string.h>
 
+#include "saved_bytes.h"
 #include "simulation.h"
 
-enum {
-    GUID_LENGTH = 64,
-    STATE_VERSION = 23 /* raise the version if a model's struct changes: the GUID may not change */
-};
+enum { GUID_LENGTH = 64 };
 
 typedef struct {
     char magic[8];
@@ -39,18 +37,9 @@ static state_header header_of(const void *block)
     return header;
 }
 
-/* FNV-1a, 64 bit: datatracker.ietf.org/doc/html/draft-eastlake-fnv */
-static uint64_t checksum(const unsigned char *block, size_t size)
+static uint64_t checksum(const void *block)
 {
-    uint64_t hash = UINT64_C(14695981039346656037);
-    const size_t hole = offsetof(state_header, checksum);
-    size_t i;
-
-    for (i = 0; i < size; ++i) {
-        const unsigned char byte = i >= hole && i < hole + sizeof hash ? 0 : block[i];
-        hash = (hash ^ byte) * UINT64_C(1099511628211);
-    }
-    return hash;
+    return sh_checksum(block, block_size(), offsetof(state_header, checksum));
 }
 
 /* Writes the state of an instance to a block, whose checksum remains 0. */
@@ -60,7 +49,7 @@ static void write_block(const sh_instance *instance, void *block)
 
     (void)memset(&header, 0, sizeof header);
     (void)memcpy(header.magic, MAGIC, sizeof MAGIC);
-    header.version = STATE_VERSION;
+    header.version = SH_STATE_VERSION;
     header.state = (uint32_t)instance->state;
     (void)strncpy(header.guid, sh_fmu_model.guid, GUID_LENGTH - 1);
     header.time = instance->time;
@@ -80,7 +69,7 @@ static const char *defect_of_block(const void *block)
     if (memcmp(header.magic, MAGIC, sizeof MAGIC) != 0) {
         return "is not a state of a sigmahat FMU";
     }
-    if (header.version != STATE_VERSION) {
+    if (header.version != SH_STATE_VERSION) {
         return "has another version of the format";
     }
     if (strncmp(header.guid, sh_fmu_model.guid, GUID_LENGTH) != 0) {
@@ -119,7 +108,7 @@ static const char *defect_of_bytes(const void *bytes, size_t size)
     if (size != block_size()) {
         return "is truncated or too long";
     }
-    if (header_of(bytes).checksum != checksum(bytes, size)) {
+    if (header_of(bytes).checksum != checksum(bytes)) {
         return "is damaged: its checksum does not match";
     }
     return NULL;
@@ -241,7 +230,7 @@ sh_status sh_serialize_state(void *handle, const void *state, void *bytes, size_
     }
     (void)memcpy(bytes, state, block_size());
     header = header_of(bytes);
-    header.checksum = checksum(bytes, block_size());
+    header.checksum = checksum(bytes);
     (void)memcpy(bytes, &header, sizeof header);
     return SH_OK;
 }

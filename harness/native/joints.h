@@ -46,6 +46,28 @@ SH_EXPORT void sh_joint_start(sh_joint *joint);
 SH_EXPORT void sh_joint_evaluate(const sh_joint *joint, size_t count, const double *phi,
                                  const double *set_point, sh_point *points);
 
+/* Size of the saved bytes of so many estimators [bytes]. */
+SH_EXPORT size_t sh_joints_saved_size(size_t joints);
+
+/* Saves parameters, estimates and outputs.
+ *
+ * memory  of sh_joint, at memory + j * stride for joint j [size: joints x stride, bytes]
+ * saved   the bytes, for this build of the library on this platform [size: sh_joints_saved_size()]
+ */
+SH_EXPORT void sh_joints_save(const char *memory, size_t joints, size_t stride, void *saved);
+
+/* Restores what sh_joints_save saved.
+ *
+ * memory  as for sh_joints_save
+ * saved   any bytes, for example of a file [size: size]
+ *
+ * Returns NULL, or the defect of the bytes as text, such as "is truncated": then the memory is
+ * unchanged. Bytes without a defect have parameters in their ranges, and estimators with which a
+ * tick is possible, even if the bytes are a forgery with the right checksum.
+ */
+SH_EXPORT const char *sh_joints_restore(char *memory, size_t joints, size_t stride,
+                                        const void *saved, size_t size);
+
 /* Runs a tick for each of the samples first to end - 1 of each joint, joint after joint.
  *
  * memory  of sh_joint, at memory + j * stride for joint j [size: joints x stride, bytes]

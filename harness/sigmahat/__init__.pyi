@@ -15,11 +15,11 @@ from .experiments.scenario import Scenario as Scenario
 from .experiments.scenario import Sine as Sine
 from .experiments.scenario import Sines as Sines
 from .fmi.installed import fmu as fmu
-from .fmi.instance import FmuError as FmuError
 from .fmi.master import EstimatorFmu as EstimatorFmu
 from .fmi.master import Plant as Plant
 from .fmi.master import Recording as Recording
 from .fmi.master import simulate as simulate
+from .fmi.model import FmuError as FmuError
 from .fmi.series import Series as Series
 from .motor.identify import identify as identify
 from .motor.quantities import Identified as Identified

@@ -11,7 +11,8 @@ from typing import Any
 from sigmahat import result
 from sigmahat.experiments.scenario import Scenario
 from sigmahat.files.templates import environment
-from sigmahat.fmi.instance import Fmu, Value
+from sigmahat.fmi.instance import Fmu
+from sigmahat.fmi.model import Value
 from sigmahat.paper.scenarios import scenario
 from sigmahat.plant_fmu import archive
 

@@ -15,7 +15,8 @@ from typing import Any
 
 from sigmahat import guess
 from sigmahat.files import toml_file
-from sigmahat.fmi.instance import Fmu, Value
+from sigmahat.fmi.instance import Fmu
+from sigmahat.fmi.model import Value
 from sigmahat.paper.scenarios import scenario
 from sigmahat.plant_fmu.compiler import CODE, HEADERS
 from sigmahat.recording.configuration import ANOTHER_ROBOT, ANY_COULOMB

@@ -20,8 +20,9 @@ from controllers import run
 from plant_runs import QUIET
 from recordings import one_seed
 from sigmahat.experiments.scenario import T
-from sigmahat.fmi.instance import Fmu, FmuError, Slave, opened
+from sigmahat.fmi.instance import Fmu, Slave, opened
 from sigmahat.fmi.master import simulate
+from sigmahat.fmi.model import FmuError
 from sigmahat.paper.scenarios import scenario
 
 PLANT = scenario("table1").plant

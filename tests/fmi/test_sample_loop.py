@@ -15,9 +15,10 @@ import sigmahat
 from controllers import run
 from sigmahat.experiments.scenario import T
 from sigmahat.fmi import native
-from sigmahat.fmi.instance import Fmu, FmuError, Slave
+from sigmahat.fmi.instance import Fmu, Slave
 from sigmahat.fmi.interrupts import interrupts_wait
 from sigmahat.fmi.master import Plant, simulate
+from sigmahat.fmi.model import FmuError
 from sigmahat.fmi.sample_loop import SampleLoop
 from sigmahat.paper.scenarios import scenario
 

@@ -11,7 +11,7 @@ import sigmahat
 from fmi_instance import ERROR, OK, Instance
 from fmi_runs import ESTIMATORS, FMI2, PLANTS, SIGNALS, Fmi, names
 from sigmahat.fmi.instance import Fmu, Slave
-from sigmahat.fmi.sample_loop import SampleLoop, present_values, step_times
+from sigmahat.fmi.sample_loop import Recorder, SampleLoop, step_times
 
 SENSOR, STANDARD = 2, 2
 # One parameter, regressor phi = 1 and P_0 = 1: P(k) = 1 / (1 + k), so 1 / rho counts the ticks.
@@ -31,8 +31,10 @@ def test_a_million_steps_of_a_sample_period_are_a_million_ticks() -> None:
         # The rounding errors are as in importers, which add up the time.
         times = np.concatenate([[0.0], np.cumsum(np.full(count - 1, h))])
         loop.step(slave, step_times(times, h))
+        recorder = Recorder(slave, ["rho"], count)
+        recorder.add_to(loop)
         loop.run(0, count)
-        assert round(1.0 / present_values(slave, ["rho"])["rho"]) == count
+        assert round(1.0 / recorder.columns()["rho"][-1]) == count
 
 
 @pytest.mark.parametrize(

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from regression_joint import WITHOUT_MISFITS
 from shared_data import data_folder
 from sigmahat import Estimator
-from sigmahat.fmi.instance import Value
+from sigmahat.fmi.model import Value
 
 Array = NDArray[np.float64]
 

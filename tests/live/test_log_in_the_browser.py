@@ -11,7 +11,7 @@ import pytest
 import sigmahat
 from live_page import LivePage, csv, live_page
 from recorded_logs import Array, awas_log
-from sigmahat.fmi.instance import Value
+from sigmahat.fmi.model import Value
 
 KNEE_FILE = Path(__file__).parents[2] / "examples" / "tutorial" / "knee.csv"
 KNEE = KNEE_FILE.read_text(encoding="utf-8")

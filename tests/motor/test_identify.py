@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 import tomlkit
 
-import sigmahat
 from checked_logs import RIGHT, knee_log, log_by_hand
 from command_line import Shell
 from recorded_logs import (
@@ -27,7 +26,7 @@ from recorded_logs import (
     write_log,
 )
 from regression_joint import Joint
-from sigmahat.fmi.instance import Fmu
+from sigmahat.fmi.model import installed_model
 from sigmahat.motor.coherence import coherent_range
 from sigmahat.motor.equation import Form, Signals, equations, fit
 from sigmahat.motor.identify import identify
@@ -137,8 +136,7 @@ def test_values_are_written_where_they_stand(parameters: str, found: Found, path
     written = write(found[1.0], path)
     read = read_configuration(path).parameters
     assert set(written) == {f"parameters.{name}" for name in read}
-    with Fmu(sigmahat.fmu("StiffnessEstimator")) as fmu:
-        fmu.parameters(read)  # the FMU accepts all parameters
+    installed_model("StiffnessEstimator").parameters(read)  # the FMU accepts all parameters
     for name, key in (("B", "motor.B"), ("D_theta", "motor.D_theta")):
         assert read[key] == pytest.approx(TRUE[name], rel=0.05)
     assert read["prior.tau_coulomb"] == pytest.approx(TRUE["tau_coulomb"], rel=0.05)

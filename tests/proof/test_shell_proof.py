@@ -60,7 +60,7 @@ LOGGER = re.compile(
     r"|\(void \(\*\)\(void\)\)[\w>-]+"
 )
 # How many states Eva keeps apart in a function; with 0 it joins all that can happen.
-APART = ["checksum:0", "sh_accepts:0", "sh_communication_step:100", "set_start_values:0"]
+APART = ["sh_checksum:0", "sh_accepts:0", "sh_communication_step:100", "set_start_values:0"]
 APART_IN_AN_ESTIMATOR = ["sh_estimator_fmu_step:10"]
 APART_IN_A_PLANT = [
     *("sh_radau_integrate:0", "take:0", "sh_noise_normal:0", "step:30", "fmin:10", "fmax:10")

@@ -6,12 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import sigmahat
 from recorded_logs import configured, in_memory
-from sigmahat.fmi.instance import Fmu
 from sigmahat.recording.configuration import Configuration, Port, Time
+from sigmahat.recording.estimator_parameters import parameters
 from sigmahat.recording.log import LogError, LogInMemory
-from sigmahat.recording.replay import parameters
 from sigmahat.recording.resampling import Samples, sample
 
 GEAR, COUNTS, T = 80, 2**14, 2e-3
@@ -82,9 +80,8 @@ def test_a_column_with_times_of_its_own() -> None:
 
 @pytest.mark.parametrize(("period", "rate"), [(0.001, None), (0.01, 100.0)])
 def test_filters_are_not_faster_than_the_samples(period: float, rate: float | None) -> None:
-    with Fmu(sigmahat.fmu("StiffnessEstimator")) as fmu:
-        start = parameters(fmu, in_memory(configured(f"samplePeriod = {period}")))
-        assert start.get("regression.bandwidth") == start.get("residual.K_I") == rate
+    start = parameters(in_memory(configured(f"samplePeriod = {period}")))
+    assert start.get("regression.bandwidth") == start.get("residual.K_I") == rate
 
 
 def test_a_slow_log_and_one_with_a_pause(monkeypatch: pytest.MonkeyPatch) -> None:

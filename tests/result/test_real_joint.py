@@ -13,7 +13,7 @@ from real_joint import SETTINGS, Log, M, N
 from shared_data import data_folder
 from sigmahat import Estimator
 from sigmahat.checks.check import check
-from sigmahat.fmi.instance import Value
+from sigmahat.fmi.model import Value
 from sigmahat.recording.configuration import Configuration, Port, Time
 from sigmahat.recording.readers.formats import open_log
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from sigmahat.fmi.instance import FmuError
+from sigmahat.fmi.model import FmuError
 from sigmahat.sweep.plan import Drawn, read_plan, values
 from sigmahat.sweep.preparation import check
 

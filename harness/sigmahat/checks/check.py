@@ -14,12 +14,13 @@ from sigmahat.checks.relation import relation, slope_of
 from sigmahat.checks.samples import at_rest, columns
 from sigmahat.checks.text import DOUBTS
 from sigmahat.checks.view import View, view
-from sigmahat.fmi.instance import FmuError, Slave, Value, installed
+from sigmahat.fmi.model import Value, installed_model
 from sigmahat.motor.noise import variance
 from sigmahat.motor.quantities import WIDE
 from sigmahat.recording.configuration import PORTS, Configuration
+from sigmahat.recording.estimator_parameters import all_parameters
 from sigmahat.recording.log import Log, LogError
-from sigmahat.recording.replay import all_parameters, parameters, play
+from sigmahat.recording.replay import estimator_for, play
 from sigmahat.result.data_sheet import absent, exact
 
 _INERTIA = (Kind.INERTIA, Kind.TORQUE_SCALE)
@@ -41,15 +42,11 @@ def check(log: Log, configuration: Configuration) -> Checked:
     The check uses at most 60000 ticks, in the part of the log with the most motion. The
     configuration need not be in a file.
 
-    Raises LogError for a log and configuration that do not fit, FmuError if the FMU refuses.
+    Raises LogError for a log and configuration that do not fit.
     """
-    fmu = installed("StiffnessEstimator")
     seen = view(log, configuration)
     findings = _swapped(seen) or [_tried(seen, each) for each in _contradictions(seen)]
-    # The warnings of the FMU are findings here.
-    with Slave(fmu, "check") as slave, slave.only_errors():
-        slave.initialize(parameters(fmu, configuration))
-        (outputs,) = play(slave, seen.samples, len(seen.samples.values))
+    (outputs,) = play(estimator_for(configuration), seen.samples, len(seen.samples.values))
     if not any(each.severity is Severity.WRONG for each in findings):
         # After a wrong value, the findings of the replay are only consequences of this value.
         replayed = _replayed(seen, outputs)
@@ -59,7 +56,7 @@ def check(log: Log, configuration: Configuration) -> Checked:
         findings += replayed
     is_regression = seen.every["method"] == "FilteredRegression"
     per_gain = float(outputs["sigma_per_gain"][-1]) if is_regression else 1.0
-    findings += _rests_on(seen, fmu.parameters({}), per_gain)
+    findings += _rests_on(seen, installed_model("StiffnessEstimator").parameters({}), per_gain)
     order = list(Severity)
     findings.sort(key=lambda each: order.index(each.severity))
     return Checked(findings, len(seen.samples.values), seen.T)
@@ -70,7 +67,7 @@ def check_identified(log: Log, before: Configuration, after: Configuration) -> C
 
     The inertia is compared with the inertia in `before`, if the user had given that inertia.
 
-    Raises LogError, FmuError as `check`.
+    Raises LogError as `check`.
     """
     checked = check(log, after)
     is_given = "motor.B" in before.parameters and float(all_parameters(before)["prior.B"]) < WIDE
@@ -127,7 +124,7 @@ def _tried(seen: View, finding: Finding) -> Finding:
             continue
         try:
             left = _contradictions(view(seen.log, changed(seen.configuration, key, value)))
-        except (LogError, FmuError):
+        except LogError:
             continue
         if any((e.kind, e.about) == (finding.kind, finding.about) for e in left):
             continue
@@ -197,7 +194,7 @@ def _gears(seen: View) -> Iterator[Finding]:
 def _rests_on(seen: View, start: Mapping[str, Value], per_gain: float) -> Iterator[Finding]:
     """Yields the assumptions about ports and motor that no log can verify.
 
-    start     start values of the FMU
+    start     start values of all parameters
     per_gain  relative change of the stiffness per relative change of the gain of the torque
     """
     every, given = seen.every, seen.configuration.ports

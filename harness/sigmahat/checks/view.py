@@ -5,11 +5,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sigmahat.fmi.instance import Value
+from sigmahat.fmi.model import Value
 from sigmahat.motor.equation import Signals, signals_of
 from sigmahat.recording.configuration import Configuration
+from sigmahat.recording.estimator_parameters import all_parameters
 from sigmahat.recording.log import Log
-from sigmahat.recording.replay import all_parameters
 from sigmahat.recording.resampling import Samples, sample
 
 _MOST = 60_000

@@ -208,7 +208,7 @@ def errors_in_one_line(out: Path, option: str = "--out") -> Iterator[None]:
     file or folder cannot be written.
     """
     from sigmahat.experiments.pool import WorkerError
-    from sigmahat.fmi.instance import FmuError
+    from sigmahat.fmi.model import FmuError
 
     try:
         yield

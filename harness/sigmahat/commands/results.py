@@ -175,7 +175,7 @@ def export(sheet: Path, to: str, out: Path | None, force: bool) -> None:
     values begins with the estimated stiffness. The joint has two hinges, motor and
     flexibility, with the intervals of all parameters.
     """
-    from sigmahat.fmi.instance import installed
+    from sigmahat.fmi.model import installed_model
     from sigmahat.result import parameter_file
     from sigmahat.result.robot_model import write_model
     from sigmahat.result.sheet import FORMAT
@@ -189,7 +189,7 @@ def export(sheet: Path, to: str, out: Path | None, force: bool) -> None:
             write_model(contents, to, path)
             text = f"{path.resolve()} has the joint, as two hinges; its link is a placeholder"
         else:
-            parameter_file.write(contents, installed("StiffnessEstimator"), to, path)
+            parameter_file.write(contents, installed_model("StiffnessEstimator"), to, path)
             text = f"{len(contents.start_values)} start values are in {path.resolve()}"
     common.answer(text)
 

@@ -8,8 +8,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from sigmahat.experiments.scenario import Comparison, Scenario, Sine
-from sigmahat.fmi.instance import Value
 from sigmahat.fmi.master import EstimatorFmu
+from sigmahat.fmi.model import Value
 from sigmahat.paper.scenarios import SCENARIOS, awas, lever_arm
 
 PAPER2011, REGRESSION = METHODS = ("Paper2011", "FilteredRegression")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import math
 from collections.abc import Callable, Container, Mapping, Sequence
 from typing import Any
 
@@ -10,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sigmahat.estimator.instances import INPUTS, Joints
-from sigmahat.fmi.instance import Value
+from sigmahat.fmi.model import Value
 from sigmahat.fmi.series import Series
 
 Array = NDArray[np.float64]
@@ -18,15 +19,25 @@ Array = NDArray[np.float64]
 RECORD = ("sigma", "sigma_std", "tau_e", "phi", "misfit", "confident", "valid")
 """Outputs that are recorded by default."""
 
-POINT = ("tau_e", "tau_e_std", "sigma", "sigma_std")  # results of evaluate(), as in sh_point
+POINT = ("tau_e", "tau_e_std", "sigma", "sigma_std", "sigma_per_gain")
+"""Results of evaluate(), as in sh_point."""
 
 _LONG = 1.0  # [s] a motion that is compared with range.phi
 _FAR, _WIDE = 1.2, 8.0  # ratio of the largest deformation to range.phi, and inverse ratio
+_MOST_MISSING = 1_000_000  # samples that restart_filters() leaves out
 _NEEDED = {
     "Residual": ("theta", "q", "tau"), "Sensor": ("theta", "q", "tau_e_sensor"),
     "Model": ("theta", "q"),
 }  # fmt: skip
 """Inputs without which a modality has no torque."""
+
+
+def _missing(parameters: Mapping[str, Value]) -> int:
+    """Number of missing samples after which the filters start again."""
+    if parameters["method"] != "Paper2011":
+        return 1
+    constant = float(parameters["residual.K_I"]) * float(parameters["samplePeriod"])
+    return math.ceil(min(2 / constant, _MOST_MISSING))
 
 
 class Estimator:
@@ -49,13 +60,15 @@ class Estimator:
         self,
         parameters: Mapping[str, Value] | Sequence[Mapping[str, Value]] = {},
         record: Sequence[str] = RECORD,
+        warn_of_range: bool = True,
     ) -> None:
         """Starts the estimator.
 
         The parameters have their names in the FMU, and enumerations take an item name. Missing
         parameters have the start values of the FMU. A sequence has a mapping for each joint. A
         single mapping is for all joints, and the first samples give the number of joints. `record`
-        names the outputs that run() and tick() return.
+        names the outputs that run() and tick() return. `warn_of_range` is False in a program that
+        compares range.phi with the motion itself, as `sigmahat check` does.
 
         Raises ValueError for an unknown name, and for a value that does not fit or is out of its
         range. Raises RuntimeError if the installation has no library for this platform.
@@ -70,11 +83,11 @@ class Estimator:
         self._shape: tuple[int, ...] | None = (len(given),) if several else None
         self._record = tuple(record)
         for name in self._record:
-            self._joints.fmu.variable(name, "output")
-        self.parameters = [self._joints.fmu.parameters(each) for each in given]
+            self._joints.model.variable(name, "output")
+        self.parameters = [self._joints.model.parameters(each) for each in given]
         """All present parameters of each joint: given values, else values of the FMU."""
         self._tick: Callable[[Sequence[ArrayLike | None]], dict[str, Any]] | None = None
-        self._is_warned = False
+        self._is_warned = not warn_of_range
 
     def run(
         self,
@@ -118,7 +131,7 @@ class Estimator:
         self._compare_with_range(*(arrays[n].reshape(joints, samples) for n in ("theta", "q")))
         named = {name: self._joints.named(name, v).reshape(shape) for name, v in outputs.items()}
         t = float(self.parameters[0]["samplePeriod"]) * np.arange(samples, dtype=np.float64)
-        return Series.of(self._joints.fmu, named, self.parameters[0], t)
+        return Series.of(self._joints.model, named, self.parameters[0], t)
 
     def tick(
         self,
@@ -149,9 +162,10 @@ class Estimator:
         Nothing is learned. `phi` [rad] and `set_point` [1] are numbers or arrays, which are
         broadcast. None stands for the set-point at theta_c = 0.
 
-        Returns "tau_e" and "tau_e_std" [N.m], "sigma" and "sigma_std" [N.m/rad], each in an array
-        of the shape of the points; of (joints, ...) for many joints. Where a number overflows, or a
-        point is not finite, all four are infinite.
+        Returns "tau_e" and "tau_e_std" [N.m], "sigma" and "sigma_std" [N.m/rad], and
+        "sigma_per_gain" [1], the relative change of the stiffness with a relative change of the
+        gain of the torque. Each is an array of the shape of the points; of (joints, ...) for many
+        joints. Where a number overflows, or a point is not finite, all five are infinite.
         """
         found = []
         for joint, parameters in enumerate(self.parameters):
@@ -163,10 +177,13 @@ class Estimator:
         return dict(zip(POINT, values, strict=True))
 
     def output(self, name: str) -> Any:
-        """The present value of any output: a number, or an array of shape (joints,)."""
-        self._joints.fmu.variable(name, "output")
+        """The present value of any output: a number, or an array of shape (joints,).
+
+        A Boolean or the name of an item stands for the number of a Boolean or an enumeration.
+        """
+        self._joints.model.variable(name, "output")
         values = self._joints.value(name)
-        return values if self._shape else values[0]
+        return values if self._shape else values[0].item()
 
     @property
     def eta(self) -> Array:
@@ -189,7 +206,7 @@ class Estimator:
         parameter that is fixed.
         """
         for name in parameters:
-            if self._joints.fmu.variable(name, "parameter").variability != "tunable":
+            if self._joints.model.variable(name, "parameter").variability != "tunable":
                 raise ValueError(f"{name} cannot be changed: make a new Estimator with it")
         before = self._joints.memory.copy()
         try:
@@ -198,13 +215,44 @@ class Estimator:
         except ValueError:
             self._joints.memory[:] = before
             raise
-        now = self._joints.fmu.parameters(parameters)
+        now = self._joints.model.parameters(parameters)
         self.parameters = [{**each, **{n: now[n] for n in parameters}} for each in self.parameters]
         self._tick = None
 
     def reset(self) -> None:
         """Deletes the estimate; parameters do not change."""
         self._joints.start()
+
+    def restart_filters(self) -> None:
+        """Samples are missing here, as between two recordings, and the filters have to forget.
+
+        The estimate stays. The missing samples are so many that no filter continues from the last
+        sample: one with the method FilteredRegression; with Paper2011 those of the time 2 / K_I,
+        after which the integral of the residual is discarded (sigmahat.h), but at most a million.
+        """
+        for joint, parameters in enumerate(self.parameters):
+            theta = np.full((1, _missing(parameters)), np.nan)
+            ticks = self._joints.prepared([theta, *[None] * (len(INPUTS) - 1)], {}, joint)
+            ticks(0, theta.size)
+
+    def save(self) -> bytes:
+        """Parameters and estimates of all joints, for restore() in another process.
+
+        The bytes are valid for the same version of this package on the same kind of platform.
+        """
+        return self._joints.saved()
+
+    def restore(self, saved: bytes) -> None:
+        """Continues from what save() gave: its parameters and estimates replace the present ones.
+
+        The next sample follows the last one before save(); after a break, call restart_filters().
+        Raises ValueError, and changes nothing, for bytes that are damaged, of another version of
+        the estimator, of another number of joints, or that save() never gives.
+        """
+        self._joints.restore(saved)
+        count = len(self._joints.memory)
+        self.parameters = [self._joints.parameters(joint) for joint in range(count)]
+        self._tick = None
 
     def __copy__(self) -> Estimator:
         other = Estimator.__new__(Estimator)

@@ -11,11 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sigmahat.fmi import native
-from sigmahat.fmi.instance import Value, installed
+from sigmahat.fmi.model import Value, installed_model
 
 INPUTS = ("theta", "q", "theta_c", "tau", "tau_e_sensor")  # inputs in the order of the library
 
 _CACHE_LINE = 64  # [bytes]
+_POINT = 5  # members of sh_point
 _PIECE = 1 << 16  # ticks between two moments at which Ctrl-C can end the run
 _GROUP = 64  # joints at a time: 1024 ticks of each, so that its state stays in the cache
 
@@ -39,7 +40,8 @@ class Joints:
         """Starts the estimators. Raises ValueError for a name or value that does not fit,
         RuntimeError if this installation has no library.
         """
-        self.fmu, self._library = installed("StiffnessEstimator"), _library()
+        self.model = installed_model("StiffnessEstimator")
+        self._library = _library(self.model.description.guid)
         size = int(self._library.sh_joint_size())
         self.stride = -(-size // _CACHE_LINE) * _CACHE_LINE
         self.memory = np.zeros((len(parameters), self.stride), np.uint8)
@@ -61,8 +63,8 @@ class Joints:
         """Sets parameters of a joint: all, or none if one of them does not fit (ValueError)."""
         changed = self.memory[joint].copy()
         for name, value in parameters.items():
-            variable = self.fmu.variable(name, "parameter")
-            number = self.fmu.number(name, value)
+            variable = self.model.variable(name, "parameter")
+            number = self.model.number(name, value)
             self._library.sh_joint_set(changed.ctypes.data, variable.valueReference, number)
         violation = _Violation()
         if self._library.sh_joint_check(changed.ctypes.data, ctypes.byref(violation)):
@@ -73,8 +75,8 @@ class Joints:
     def evaluated(
         self, joint: int, phi: NDArray[np.float64], set_point: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        """Torque, its std deviation, stiffness, its std deviation [size: 4 x points]."""
-        points: NDArray[np.float64] = np.empty((phi.size, 4))
+        """The members of sh_point at each point [size: 5 x points]."""
+        points: NDArray[np.float64] = np.empty((phi.size, _POINT))
         arrays = (phi.ctypes.data, set_point.ctypes.data, points.ctypes.data)
         self._library.sh_joint_evaluate(self._address(joint), phi.size, *arrays)
         return np.transpose(points)
@@ -84,27 +86,47 @@ class Joints:
         other.memory = self.memory.copy()
         return other
 
+    def saved(self) -> bytes:
+        """Parameters, estimates and outputs of all joints as bytes."""
+        joints = len(self.memory)
+        saved = ctypes.create_string_buffer(self._library.sh_joints_saved_size(joints))
+        self._library.sh_joints_save(self._address(0), joints, self.stride, saved)
+        return saved.raw
+
+    def restore(self, saved: bytes) -> None:
+        """Takes what saved() gave. Raises ValueError, and changes nothing, for other bytes."""
+        of_joints = (self._address(0), len(self.memory), self.stride)
+        defect = self._library.sh_joints_restore(*of_joints, saved, len(saved))
+        if defect is not None:
+            raise ValueError(f"the state ({len(saved)} bytes) {defect.decode()}")
+
+    def parameters(self, joint: int) -> dict[str, Value]:
+        """All parameters of a joint now."""
+        variables = self.model.variables.items()
+        names = [name for name, v in variables if v.causality == "parameter"]
+        return self.model.parameters({name: self.value(name)[joint].item() for name in names})
+
     def value(self, name: str) -> NDArray[Any]:
         """The value of a variable now, [size: joints]."""
         dtype = self._dtype(name)
-        first = int(self._library.sh_joint_place(self.fmu.variable(name).valueReference))
+        first = int(self._library.sh_joint_place(self.model.variable(name).valueReference))
         place = self.memory[:, first : first + np.dtype(dtype).itemsize]
         values = np.ascontiguousarray(place).view(dtype)[:, 0]
         return self.named(name, values)
 
     def named(self, name: str, values: NDArray[Any]) -> NDArray[Any]:
         """Values of the library as values of Python: an enumeration as the names of its items."""
-        kind = self.fmu.variable(name).type
+        kind = self.model.variable(name).type
         if kind == "Enumeration":
-            return self.fmu.item_names(name, values)
+            return self.model.item_names(name, values)
         return values.astype(bool) if kind == "Boolean" else values
 
     def names(self, name: str) -> Mapping[int, Any] | None:
         """Values of Python by the numbers of a Boolean or an Enumeration; None for a Real."""
-        kind = self.fmu.variable(name).type
+        kind = self.model.variable(name).type
         if kind == "Boolean":
             return {0: False, 1: True}
-        return self.fmu.items(name) if kind == "Enumeration" else None
+        return self.model.items(name) if kind == "Enumeration" else None
 
     def run(
         self, inputs: Sequence[NDArray[np.float64] | None], outputs: Mapping[str, NDArray[Any]]
@@ -138,7 +160,7 @@ class Joints:
         exist as long as the function is called.
         """
         joints, samples = next(each.shape for each in inputs if each is not None)
-        each_output = ((self.fmu.variable(n).valueReference, v) for n, v in outputs.items())
+        each_output = ((self.model.variable(n).valueReference, v) for n, v in outputs.items())
         places = (Output * len(outputs))(*(Output(n, v.ctypes.data) for n, v in each_output))
         of_joints = (self._address(joint), joints, self.stride, samples)
         arrays = (*(None if each is None else each.ctypes.data for each in inputs), places)
@@ -153,14 +175,14 @@ class Joints:
         return np.empty((joints, samples), self._dtype(name))
 
     def _dtype(self, name: str) -> type[np.float64] | type[np.int32]:
-        return np.float64 if self.fmu.variable(name).type == "Real" else np.int32
+        return np.float64 if self.model.variable(name).type == "Real" else np.int32
 
     def _address(self, joint: int) -> int:
         return int(self.memory.ctypes.data) + joint * self.stride
 
 
-def _library() -> ctypes.CDLL:
+def _library(guid: str) -> ctypes.CDLL:
     library = native.library()
-    if library.sh_joint_guid().decode() != installed("StiffnessEstimator").description.guid:
+    if library.sh_joint_guid().decode() != guid:
         raise RuntimeError("StiffnessEstimator.fmu and library are of two builds; build both again")
     return library

@@ -11,8 +11,9 @@ from typing import TypeVar
 from sigmahat.experiments.metrics import Indices, indices
 from sigmahat.experiments.pool import spread
 from sigmahat.experiments.scenario import Scenario, signal_of
-from sigmahat.fmi.instance import Value, named
+from sigmahat.fmi.instance import named
 from sigmahat.fmi.master import Recording, simulate
+from sigmahat.fmi.model import Value
 
 Progress = Callable[[int], object]
 Result = TypeVar("Result")

@@ -1,16 +1,14 @@
-"""FMUs and their instances in a co-simulation, by names on top of FMPy's FMI 2.0 calls."""
+"""Unpacked FMUs and their instances in a co-simulation, on top of FMPy's FMI 2.0 calls."""
 
 from __future__ import annotations
 
 import logging
 import os
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Mapping
 from copy import copy
 from ctypes import byref
 from functools import lru_cache
-from importlib import import_module
 from multiprocessing.util import Finalize, is_exiting
 from pathlib import Path
 from shutil import rmtree
@@ -19,61 +17,29 @@ from typing import Any
 from weakref import WeakValueDictionary
 
 import fmpy
-import numpy as np
 from fmpy import fmi2
-from fmpy.fmi1 import FMICallException
-from numpy.typing import NDArray
 
 from sigmahat.fmi.installed import fmu as installed_fmu
-from sigmahat.fmi.interrupts import interrupts_wait
-from sigmahat.fmi.unknown_name import unknown
+from sigmahat.fmi.model import FmuError, Model, Value
 
 try:  # some platforms only; without the proxy, messages are not formatted
     from fmpy.logging import addLoggerProxy
 except (ImportError, OSError):
     addLoggerProxy = None
 
-with interrupts_wait():  # FMPy needs lxml; a Ctrl-C during this import would be lost
-    _etree = import_module("lxml.etree")
-
-# With the first schema, libxml2 initialises its types without a lock. Two threads that read the
-# first two FMUs at the same time could fail, or end the process.
-_etree.XMLSchema(_etree.XML('<xs:schema xmlns:xs="http://www.w3.org/2001/XMLSchema"/>'))
-
-Value = float | int | bool | str  # of a variable. An enumeration takes the name of its item.
-
-_TOO_LARGE = 2**31  # smallest positive integer that does not fit an Integer of FMI
-
 _log = logging.getLogger("sigmahat")
 
 
-class FmuError(RuntimeError):
-    """An FMU refused a call. The message comes from the FMU."""
-
-
-class Fmu:
-    """An unpacked FMU and the variables of its model description, for any number of slaves.
+class Fmu(Model):
+    """An unpacked FMU, for any number of slaves.
 
     The unpacked files are removed at the end of the process, or of the block if the object is used
     as a context manager.
     """
 
     def __init__(self, path: Path) -> None:
-        """Unpacks the FMU. Raises FileNotFoundError, or FmuError if it is not for co-simulation."""
-        try:  # FMPy raises plain Exception for a description that is not valid
-            self.description = fmpy.read_model_description(path)
-        except OSError:
-            raise
-        except Exception as error:
-            raise FmuError(f"{path}: not a readable FMU ({error}); build it again") from error
-        self.name: str = self.description.modelName
-        if self.description.fmiVersion != "2.0" or self.description.coSimulation is None:
-            kind = "Co-Simulation" if self.description.coSimulation else "another use"
-            raise FmuError(
-                f"{path}: expected an FMU for FMI 2.0 Co-Simulation, got FMI "
-                f"{self.description.fmiVersion} for {kind}"
-            )
-        self.variables = {v.name: v for v in self.description.modelVariables}
+        """Unpacks the FMU. Raises what Model does."""
+        super().__init__(path)
         self.folder = mkdtemp(prefix="sigmahat-")
         self._library: list[fmi2.FMU2Slave] = []
         # Also called at the end of a process of multiprocessing, but not in a fork of this process.
@@ -99,15 +65,6 @@ class Fmu:
         another.instanceName = instance
         return another
 
-    def variable(self, name: str, causality: str | None = None) -> Any:
-        """Returns FMPy's description of a variable. Raises ValueError for an unknown variable."""
-        variable = self.variables.get(name)
-        if variable is None or causality not in (None, variable.causality):
-            known = [n for n, v in self.variables.items() if causality in (None, v.causality)]
-            kind = f"{causality or 'variable'} of {self.name}"
-            raise ValueError(unknown(kind, name, known))
-        return variable
-
     def references(self, names: Iterable[str], causality: str | None = None) -> Any:
         """Returns the value references of Real variables as an array for FMI calls."""
         variables = [self.variable(name, causality) for name in names]
@@ -115,65 +72,6 @@ class Fmu:
             if v.type != "Real":
                 raise ValueError(f"{self.name}.{v.name}: expected a Real variable, it is {v.type}")
         return value_references(variables)
-
-    def number(self, name: str, value: Value) -> float | int:
-        """Returns the value as a number for FMI. Raises ValueError if the value does not fit."""
-        variable = self.variable(name)
-        if variable.type == "Enumeration" and isinstance(value, str):
-            items = {item: number for number, item in self.items(name).items()}
-            if value not in items:
-                raise ValueError(unknown(f"value of {self.name}.{name}", value, items))
-            return items[value]
-        is_flag = isinstance(value, bool) and variable.type != "Boolean"
-        if isinstance(value, str) or is_flag:
-            raise ValueError(f"{self.name}.{name}: expected {variable.type}, got {value!r}")
-        try:
-            if variable.type == "Real":
-                return float(value)
-            whole = int(value)
-        except (TypeError, ValueError, OverflowError):  # a list or a date, nan, too many digits
-            whole = None
-        expected = variable.type
-        if whole is not None and whole == value:
-            if -_TOO_LARGE <= whole < _TOO_LARGE:
-                return whole
-            expected += " of 32 bits"
-        raise ValueError(f"{self.name}.{name}: expected {expected}, got {_shown(value)}")
-
-    def items(self, name: str) -> dict[int, str]:
-        """Returns the items of an enumeration: their names by their numbers."""
-        return {int(item.value): item.name for item in self.variable(name).declaredType.items}
-
-    def item_names(self, name: str, numbers: NDArray[np.int32]) -> NDArray[np.str_]:
-        """Returns the names of the items of an enumeration, which FMI gives as numbers.
-
-        numbers  of items, shape (N,)
-        """
-        items = dict(sorted(self.items(name).items()))
-        places = np.searchsorted(list(items), numbers)
-        names: NDArray[np.str_] = np.array(list(items.values()))[places]
-        return names
-
-    def parameters(self, start: Mapping[str, Value]) -> dict[str, Value]:
-        """Returns all parameters of a slave: start values where given, else values of the FMU."""
-        values: dict[str, Value] = {}
-        for name, variable in self.variables.items():
-            if variable.causality != "parameter" or variable.type == "String":
-                continue
-            boolean = variable.type == "Boolean"
-            default = variable.start == "true" if boolean else float(variable.start)
-            value: Value = self.number(name, start.get(name, default))
-            if variable.type == "Enumeration":
-                value = self.items(name)[int(value)]
-            values[name] = value
-        return values
-
-
-def _shown(value: object) -> str:
-    try:
-        return repr(value)[:100]
-    except ValueError:  # Python limits the number of digits of an integer as text
-        return "a number with too many digits"
 
 
 def installed(name: str) -> Fmu:
@@ -270,42 +168,6 @@ class Slave:
             self.call(setter, value_references([variable]), 1, value)
         self.call(self.functions.fmi2EnterInitializationMode)
         self.call(self.functions.fmi2ExitInitializationMode)
-
-    @contextmanager
-    def only_errors(self) -> Iterator[None]:
-        """Inside the block, the FMU reports only errors, because the user knows its warnings."""
-        category = (fmi2.fmi2String * 1)(b"logStatusError")
-        self.call(self.functions.fmi2SetDebugLogging, fmi2.fmi2True, 1, category)
-        yield
-        self.call(self.functions.fmi2SetDebugLogging, fmi2.fmi2False, 0, None)
-
-    def saved(self) -> bytes:
-        """The state of the FMU: parameters, inputs, outputs, time, and the estimate."""
-        with self._state(self.fmi.getFMUstate) as state:
-            return bytes(self.fmi.serializeFMUstate(state))
-
-    def restore(self, saved: bytes) -> float:
-        """Takes a state that was saved, and returns its time [s].
-
-        Raises FmuError with a reason for bytes that are not a saved state of this FMU.
-        """
-        with self._state(self.fmi.deSerializeFMUstate, saved) as state:
-            self.fmi.setFMUstate(state)
-        time = fmi2.fmi2Real()
-        self.call(self.functions.fmi2GetRealStatus, fmi2.fmi2LastSuccessfulTime, byref(time))
-        return float(time.value)
-
-    @contextmanager
-    def _state(self, make: Callable[..., Any], *arguments: bytes) -> Iterator[Any]:
-        """A state that FMPy makes; its memory is freed at the end of the block."""
-        try:
-            state = make(*arguments)
-            try:
-                yield state
-            finally:
-                self.fmi.freeFMUstate(state)
-        except FMICallException as error:
-            raise self.failure(f"{error.function} failed") from error
 
 
 def _close(library: list[fmi2.FMU2Slave], folder: str) -> None:

@@ -13,7 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sigmahat.fmi.instance import Slave, Value, named
+from sigmahat.fmi.instance import Slave, named
+from sigmahat.fmi.model import Value
 from sigmahat.fmi.sample_loop import Recorder, SampleLoop, step_times
 from sigmahat.fmi.series import Series
 

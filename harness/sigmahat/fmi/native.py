@@ -10,9 +10,9 @@ from typing import Any
 import fmpy
 
 from sigmahat.fmi.installed import folder
-from sigmahat.fmi.instance import FmuError
+from sigmahat.fmi.model import FmuError
 
-_INTERFACE = 2  # as in harness/native/sample_loop.c
+_INTERFACE = 3  # as in harness/native/sample_loop.c
 _POINTER, _SIZE, _NUMBER = ctypes.c_void_p, ctypes.c_size_t, ctypes.c_uint
 _FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "sh_sample_loop": (_SIZE, [_POINTER, *[_SIZE] * 3]),
@@ -24,6 +24,9 @@ _FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "sh_joint_check": (ctypes.c_int, [_POINTER, _POINTER]),
     "sh_joint_start": (None, [_POINTER]),
     "sh_joint_evaluate": (None, [_POINTER, _SIZE, *[_POINTER] * 3]),
+    "sh_joints_saved_size": (_SIZE, [_SIZE]),
+    "sh_joints_save": (None, [_POINTER, _SIZE, _SIZE, _POINTER]),
+    "sh_joints_restore": (ctypes.c_char_p, [_POINTER, _SIZE, _SIZE, _POINTER, _SIZE]),
     "sh_joints_run": (None, [_POINTER, *[_SIZE] * 5, *[_POINTER] * 6, _SIZE]),
 }
 """Result and arguments of the functions in harness/native/*.h."""

@@ -134,22 +134,11 @@ class Recorder:
             group = [v for v in variables if _KINDS[v.type] == kind]
             dtype = np.float64 if kind == "Real" else np.int32
             self._tables[kind] = group, np.empty((samples, len(group)), dtype)
-        enumerations = (v.name for v in variables if v.type == "Enumeration")
-        self._items = {name: slave.fmu.items(name) for name in enumerations}
 
     def add_to(self, loop: SampleLoop) -> None:
         """From now on the loop writes a row for each of its samples."""
         for kind, (group, table) in self._tables.items():
             loop.get(self.slave, kind, value_references(group), table)
-
-    def row(self, k: int) -> dict[str, Any]:
-        """Returns the values of row k by name, as columns() would."""
-        values: dict[str, Any] = {}
-        for group, table in self._tables.values():
-            for v, value in zip(group, table[k].tolist(), strict=True):
-                is_item = v.type == "Enumeration"
-                values[v.name] = self._items[v.name][value] if is_item else value
-        return values
 
     def columns(self) -> dict[str, NDArray[Any]]:
         """Returns the recorded values by name, each of shape (samples,); an enumeration has the
@@ -163,11 +152,3 @@ class Recorder:
                 is_item = v.type == "Enumeration"
                 columns[v.name] = fmu.item_names(v.name, values) if is_item else values
         return columns
-
-
-def present_values(slave: Slave, names: Iterable[str]) -> dict[str, Any]:
-    """Reads present values of variables by name. Raises FmuError if the FMU refuses."""
-    recorder, loop = Recorder(slave, names, 1), SampleLoop()
-    recorder.add_to(loop)
-    loop.run(0, 1)
-    return recorder.row(0)

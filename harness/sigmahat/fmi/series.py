@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sigmahat.fmi.instance import Fmu, Value
+from sigmahat.fmi.model import Model, Value
 
 if TYPE_CHECKING:
     import pandas
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Series:
-    """Recorded variables of one FMU, or of an estimator for several joints."""
+    """Recorded variables of one FMU, or of an estimator for one joint or several."""
 
     values: Mapping[str, NDArray[Any]]
     """Recorded variables by name, of shape (N,) or (joints, N), in the unit of the variable."""
@@ -30,13 +30,13 @@ class Series:
 
     @staticmethod
     def of(
-        fmu: Fmu,
+        model: Model,
         values: Mapping[str, NDArray[Any]],
         parameters: Mapping[str, Value],
         t: NDArray[np.float64],
     ) -> Series:
         """Variables of an FMU, with units and descriptions from its model description."""
-        variables = {name: fmu.variable(name) for name in values}
+        variables = {name: model.variable(name) for name in values}
         units = {name: v.unit for name, v in variables.items() if v.unit is not None}
         descriptions = {name: v.description or "" for name, v in variables.items()}
         return Series(values, units, parameters, t, descriptions)
@@ -81,11 +81,11 @@ class Series:
 _KINDS = {"Real": "number", "Boolean": "boolean", "Enumeration": "string"}
 
 
-def schema(fmu: Fmu, names: Iterable[str]) -> dict[str, Any]:
+def schema(model: Model, names: Iterable[str]) -> dict[str, Any]:
     """Schema of a message with these outputs; an enumeration is the name of its item."""
     properties = {}
     for name in names:
-        variable = fmu.variable(name, "output")
+        variable = model.variable(name, "output")
         unit = f" [{variable.unit}]" if variable.unit else ""
         described = f"{variable.description or name}{unit}"
         properties[name] = {"type": _KINDS[variable.type], "description": described}

@@ -9,7 +9,7 @@ import tomlkit
 from tomlkit.items import Table
 
 from sigmahat.files.templates import environment
-from sigmahat.fmi.instance import installed
+from sigmahat.fmi.model import installed_model
 from sigmahat.guess.columns import TURN, Column, Columns, likely_unit
 from sigmahat.guess.guess import JointGuess
 from sigmahat.guess.ports import PortGuess
@@ -155,7 +155,7 @@ _TEMPLATES.globals |= {
     "IN_NM": _IN_NM,
     "configuration": configuration,
     "key": _key,
-    "start": lambda name: float(installed("StiffnessEstimator").variable(name).start),
+    "start": lambda name: float(installed_model("StiffnessEstimator").variable(name).start),
     "period_of": period_of,
     "largest": _largest,
     "encoder": _encoder,

@@ -8,6 +8,7 @@ from typing import Any
 
 import foxglove
 
+from sigmahat.fmi.model import installed_model
 from sigmahat.fmi.series import schema
 from sigmahat.live.joint import BANDED, GIVEN, Estimated, LiveJoint
 from sigmahat.live.loop import Sink
@@ -18,7 +19,7 @@ def serve(address: tuple[str, int], joints: Sequence[LiveJoint]) -> Sink:
     foxglove.set_log_level("CRITICAL")  # no messages about viewers that disconnect
     foxglove.start_server(name="sigmahat", host=address[0], port=address[1])
     channel = partial(foxglove.Channel, message_encoding="json")
-    channels = {j.name: channel(f"/{j.name}/estimate", schema=_schema(j)) for j in joints}
+    channels = {j.name: channel(f"/{j.name}/estimate", schema=_schema()) for j in joints}
 
     def send(ticks: Sequence[Estimated]) -> None:
         for each in ticks:
@@ -27,10 +28,11 @@ def serve(address: tuple[str, int], joints: Sequence[LiveJoint]) -> Sink:
     return send
 
 
-def _schema(joint: LiveJoint) -> foxglove.Schema:
-    described = schema(joint.slave.fmu, GIVEN)
+def _schema() -> foxglove.Schema:
+    model = installed_model("StiffnessEstimator")
+    described = schema(model, GIVEN)
     for of in BANDED:
-        text = f"end of the 95 % interval of {of} [{joint.slave.fmu.variable(of).unit}]"
+        text = f"end of the 95 % interval of {of} [{model.variable(of).unit}]"
         for end in ("low", "high"):
             described["properties"][f"{of}_{end}"] = {"type": "number", "description": text}
     data = json.dumps(described).encode()

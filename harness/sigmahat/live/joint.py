@@ -15,17 +15,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sigmahat.files.output import finite
-from sigmahat.fmi.instance import Slave, installed
-from sigmahat.fmi.sample_loop import Recorder, SampleLoop
 from sigmahat.live.clock import Clock
 from sigmahat.live.messages import Columns
-from sigmahat.recording.configuration import Configuration, Port
+from sigmahat.recording.configuration import PORTS, Configuration, Port
 from sigmahat.recording.log import LogError
-from sigmahat.recording.replay import gap, parameters
+from sigmahat.recording.replay import estimator_for
 from sigmahat.recording.resampling import AT_TICK, counter, turns_from
 from sigmahat.recording.units import scale, seconds
 from sigmahat.result.curve import NORMAL_95
-from sigmahat.result.learned import Learned, go_on, write_learned
+from sigmahat.result.learned import Learned, continue_from, write_learned
 from sigmahat.result.stored import LearnedLog
 
 OUTPUTS = ("sigma", "sigma_std", "tau_e", "tau_e_std", "phi", "setPoint", "misfit", "change_age")
@@ -115,13 +113,12 @@ class LiveJoint:
 
         Raises the errors of result/replayed_log.py for a configuration or state that does not fit.
         """
-        fmu = installed("StiffnessEstimator")
-        start = parameters(fmu, configuration)
         self.configuration, ports = configuration, configuration.ports
         self.name = configuration.joint or "joint"  # name for people and topics
-        self._every = fmu.parameters(start)
-        configuration.need_ports(str(self._every["modality"]))
-        self.T = float(self._every["samplePeriod"])
+        self._estimator = estimator_for(configuration, ("a", *GIVEN))
+        (parameters,) = self._estimator.parameters
+        configuration.need_ports(str(parameters["modality"]))
+        self.T = float(parameters["samplePeriod"])
         self.longest_gap = configuration.time.longest_gap or _USUAL_GAP * self.T
         """Longest gap over which values are interpolated [s]."""
         self.ports = {n: LivePort(n, p, self.T, self.longest_gap) for n, p in ports.items()}
@@ -133,17 +130,11 @@ class LiveJoint:
         for name in ("", *ports):
             clocks.setdefault(self.time_column(name), Clock(seconds(unit)))
         self._clocks = clocks
-        self.slave = Slave(fmu, configuration.joint or "estimator").__enter__()
-        self.slave.initialize(start)
-        self._t_0, self._logs = 0.0, [*learned.logs] if learned else []
+        self._logs = [*learned.logs] if learned else []
         self.skipped_of_all = 0  # ticks that were skipped, in all recordings
         if learned is not None:
-            self._t_0 = go_on(self.slave, learned, self._every, configuration.path)
-        self._values, self._times = np.zeros((1, len(ports))), np.zeros((1, 2))
-        self._recorder, self._loop = Recorder(self.slave, ("a", *GIVEN), 1), SampleLoop()
-        self._loop.set_real(self.slave, fmu.references(ports, "input"), self._values)
-        self._loop.step(self.slave, self._times)
-        self._recorder.add_to(self._loop)
+            continue_from(learned, self._estimator, configuration.path)
+        self._values = np.zeros(len(ports))  # of the ports at a tick
         self._begin()
 
     def _begin(self) -> None:
@@ -187,14 +178,13 @@ class LiveJoint:
             yield from self._run(self._start, is_end=True)
         counts = self._ticks, self._skipped
         self._logs.append(LearnedLog(str(recording), digest, *counts, *self._used.values()))
-        self._t_0 += self.T * self._ticks
         self.skipped_of_all += self._skipped
         self._begin()
-        write_learned(self.slave, self._every, self._logs, learned)
+        write_learned(self._estimator, self._logs, learned)
 
     def go_on(self) -> None:
         """Continues after the end of a recording; filters start again with the next sample."""
-        self._t_0 = gap(self.slave, self._t_0, self._every)
+        self._estimator.restart_filters()
 
     def _run(self, start: float, is_end: bool) -> Iterator[Estimated]:
         clock = self._clocks[self.time_column("")]
@@ -210,17 +200,15 @@ class LiveJoint:
                         return
                     self._clocks[self.time_column(name)].give_up(at_tick + AT_TICK * self.T)
                     value = math.nan
-                self._values[0, place] = value
+                self._values[place] = value
             yield self._tick(start + (clock.shift or 0) * clock.seconds)
 
     def _tick(self, start: float) -> Estimated:
-        self._counter.put_right(self._values[0])
-        self._times[0] = self._t_0 + self.T * self._ticks, self.T
-        self._loop.run(0, 1)
-        outputs = self._recorder.row(0)
+        self._counter.put_right(self._values)
+        values = dict(zip(self.ports, self._values.tolist(), strict=True))
+        outputs = self._estimator.tick(**{name: values.get(name, 0.0) for name in PORTS})
         t = start + self.T * self._ticks
         self._ticks += 1
-        outputs |= {flag: bool(outputs[flag]) for flag in _FLAGS}
         self._skipped += not outputs["valid"]
         if outputs.pop("a") > 0 and outputs["valid"]:
             for name, used in self._used.items():

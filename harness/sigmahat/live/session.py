@@ -81,7 +81,7 @@ class Session:
     def __init__(self, config: Path, out: Path, start_from: Path | None = None) -> None:
         """out  folder to write into, which exists
 
-        Raises LogError for settings that do not fit, FmuError if the FMU refuses a value.
+        Raises LogError for settings that do not fit.
         """
         self._document, self._out = read_document(config), out
         self.clocks: dict[str, Clock] = {}  # clocks by time column; "" for the time of arrival
@@ -150,10 +150,7 @@ class Session:
         return found
 
     def close(self) -> list[Estimated]:
-        found = self._end_recording()
-        for joint in self.joints:
-            joint.slave.__exit__()
-        return found
+        return self._end_recording()
 
     def _configuration(self) -> tomlkit.TOMLDocument:
         """Creates a configuration with which `estimate` repeats the estimates of a recording."""

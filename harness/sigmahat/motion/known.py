@@ -7,8 +7,8 @@ from sigmahat.motion.joints_of_log import Joint, Limits, Ranges
 from sigmahat.motor.equation import signals_of
 from sigmahat.motor.noise import low_pass
 from sigmahat.recording.configuration import Configuration
+from sigmahat.recording.estimator_parameters import all_parameters
 from sigmahat.recording.log import Log, LogError
-from sigmahat.recording.replay import all_parameters
 from sigmahat.recording.resampling import sample
 from sigmahat.result.curve import stiffness_in_the_middle
 from sigmahat.result.estimate import Estimate, estimate

@@ -30,7 +30,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sigmahat.estimator.powers import powers_of_phi
-from sigmahat.fmi.instance import Value
+from sigmahat.fmi.model import Value
 from sigmahat.motor.noise import SETTLED, low_pass
 from sigmahat.recording.log import Array
 from sigmahat.recording.resampling import Samples, stretches

@@ -10,7 +10,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from sigmahat.fmi.instance import Fmu, Slave, Value, installed
+from sigmahat.estimator.estimator import Estimator
+from sigmahat.fmi.model import Value, installed_model
 from sigmahat.motor.coherence import coherent_range, is_hidden
 from sigmahat.motor.equation import Signals, set_point_moves, shortest, signals_of
 from sigmahat.motor.motor_fit import KnownInertia, MotorFit, fit_motor
@@ -23,8 +24,8 @@ from sigmahat.motor.spring import (
     with_two_springs,
 )
 from sigmahat.recording.configuration import Configuration
+from sigmahat.recording.estimator_parameters import parameters
 from sigmahat.recording.log import Array, Log, LogError
-from sigmahat.recording.replay import parameters, play
 from sigmahat.recording.resampling import Samples, sample, stretches
 
 _LONGEST = 600.0  # [s] of a log that are used
@@ -86,9 +87,8 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
     long enough.
     """
     _check(configuration, torque_constant)
-    fmu = installed("StiffnessEstimator")
-    start = parameters(fmu, configuration)
-    every = fmu.parameters(start)
+    start = parameters(configuration)
+    every = installed_model("StiffnessEstimator").parameters(start)
     samples = _beginning(sample(log, configuration, float(every["samplePeriod"])))
     T, gamma = samples.T, float(every["motor.gamma"])
     pieces = list(signals_of(samples, every, sensor=torque_constant)) if T <= _SLOWEST else []
@@ -136,7 +136,7 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
         theta_variance=noise.position,
         bandwidth=2 * math.pi * min(bandwidth, coherent, _RESOLVED / samples.T),
         coherent=coherent,
-        V_a=_best_V_a(fmu, samples, start, longest, noise.bandwidth),
+        V_a=_best_V_a(T, start, longest, noise.bandwidth),
         phi=max(float(np.max(np.abs(piece.phi - center))) for piece in pieces),
         zero=center,
         knees=()
@@ -233,21 +233,18 @@ def _beginning(samples: Samples) -> Samples:
     )
 
 
-def _best_V_a(
-    fmu: Fmu, samples: Samples, start: Mapping[str, Value], piece: Signals, f_0: float
-) -> float:
+def _best_V_a(T: float, start: Mapping[str, Value], piece: Signals, f_0: float) -> float:
     """Finds the V_a for which the filtered velocity is nearest to a zero-phase reference."""
     theta: Array = piece.theta[:_V_A_TICKS]
-    wide = min(2.5 * f_0, _V_A_HIGHEST / samples.T)
-    reference = np.gradient(low_pass(theta, wide, samples.T), samples.T)
+    wide = min(2.5 * f_0, _V_A_HIGHEST / T)
+    reference = np.gradient(low_pass(theta, wide, T), T)
     settled = slice(len(theta) // 10, -len(theta) // 10)
-    only = Samples(samples.T, ["theta"], theta[:, None])
+    nothing = np.zeros(len(theta))
     errors: dict[float, float] = {}
     for V_a in _V_A:
-        with Slave(fmu, "filter") as slave:
-            filtered = {"method": "Paper2011", "filter.V_a": V_a, "modality": "Residual"}
-            slave.initialize({**start, **filtered})
-            (outputs,) = play(slave, only, len(theta))
-            difference = outputs["theta_dot"][settled] - reference[settled]
-            errors[V_a] = float(np.mean(difference**2))
+        filtered = {"method": "Paper2011", "filter.V_a": V_a, "modality": "Residual"}
+        estimator = Estimator({**start, **filtered}, ["theta_dot"])
+        velocity = estimator.run(theta=theta, q=nothing, tau=nothing)["theta_dot"]
+        difference = velocity[settled] - reference[settled]
+        errors[V_a] = float(np.mean(difference**2))
     return min(errors, key=errors.__getitem__)

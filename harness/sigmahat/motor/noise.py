@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sigmahat.fmi.instance import Value
+from sigmahat.fmi.model import Value
 from sigmahat.recording.log import Array
 
 _WINDOWS = 40

@@ -9,7 +9,7 @@ import tomlkit
 from tomlkit.items import Item
 
 from sigmahat.files import toml_file
-from sigmahat.fmi.instance import installed
+from sigmahat.fmi.model import installed_model
 from sigmahat.motor.equation import MOTOR
 from sigmahat.motor.quantities import WIDE, Identified
 from sigmahat.recording import several_joints
@@ -147,8 +147,8 @@ def _remove_what_is_not_known(document: tomlkit.TOMLDocument, joint: str) -> Non
     """Removes placeholders of `init` or of an earlier run for unknown values, because this run may
     determine the values. Values set by the user are kept.
     """
-    fmu = installed("StiffnessEstimator")
-    start = {name: float(fmu.variable(name).start) for name in ("motor.B", "motor.D_theta")}
+    model = installed_model("StiffnessEstimator")
+    start = {name: float(model.variable(name).start) for name in ("motor.B", "motor.D_theta")}
     if joint:
         _give_to_the_joints(document, start)
     for place, item in several_joints.items(document, joint).items():

@@ -7,8 +7,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 from sigmahat.experiments.scenario import Comparison, Scenario, Sine, Sines, T
-from sigmahat.fmi.instance import Value
 from sigmahat.fmi.master import EstimatorFmu, Plant
+from sigmahat.fmi.model import Value
 from sigmahat.fmi.unknown_name import unknown
 
 OUTPUTS = (

@@ -14,7 +14,7 @@ from pydantic import AfterValidator, AllowInfNan, ConfigDict, Strict, TypeAdapte
 from pydantic_core import ErrorDetails, PydanticCustomError
 
 from sigmahat.files import toml_file
-from sigmahat.fmi.instance import Value
+from sigmahat.fmi.model import Value
 from sigmahat.fmi.unknown_name import unknown
 from sigmahat.recording import several_joints
 from sigmahat.recording.log import LogError

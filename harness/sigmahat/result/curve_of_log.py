@@ -8,10 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sigmahat.estimator.estimator import Estimator
 from sigmahat.files.tables import numeric_columns, read_csv, title, write_csv
-from sigmahat.fmi.instance import Slave, Value
-from sigmahat.fmi.sample_loop import Recorder, SampleLoop, step_times
-from sigmahat.recording.configuration import PORTS
 from sigmahat.recording.log import Array
 from sigmahat.recording.resampling import stretches
 from sigmahat.result import sheet
@@ -127,39 +125,6 @@ def read_points(path: Path) -> MeasuredPoints:
     return MeasuredPoints(columns["phi"], columns["setPoint"], columns["tau_e"])
 
 
-_OUTPUTS = ("tau_e", "tau_e_std", "sigma", "sigma_std", "sigma_per_gain", "phi", "setPoint")
-
-
-def stiffness_at(
-    slave: Slave, names: Sequence[str], points: Array, t_0: float, T: float
-) -> dict[str, Array]:
-    """Computes the outputs _OUTPUTS at each point from the present estimate, [size: points].
-
-    Before each point a sample is missing. After a gap, FilteredRegression uses no sample until its
-    filters have settled. Here the filters never settle, so the outputs depend only on the earlier
-    estimate. Afterwards the slave is not usable for an estimation.
-
-    slave   slave with the method FilteredRegression, at the time t_0 [s]
-    names   names of inputs, theta and q included
-    points  values of these inputs, finite [size: points x names]
-    T       samplePeriod [s]
-    """
-    fmu = slave.fmu
-    t = t_0 + T * np.arange(2 * len(points), dtype=np.float64).reshape(-1, 2)
-    gap, sample = (step_times(each, T) for each in t.T)
-    recorder = Recorder(slave, _OUTPUTS, len(points))
-    loop = SampleLoop()
-    loop.set_real(slave, fmu.references(PORTS, "input"), np.zeros(len(PORTS)))
-    loop.set_real(slave, fmu.references(names[:1], "input"), np.full(1, np.nan))
-    loop.step(slave, gap)
-    loop.set_real(slave, fmu.references(names, "input"), np.ascontiguousarray(points))
-    loop.step(slave, sample)
-    recorder.add_to(loop)
-    with slave.only_errors():
-        loop.run(0, len(points))
-    return recorder.columns()
-
-
 _FAMILY = 5  # set-points of a curve whose set-point moves
 _MOST_LEVELS = 7  # set-points of a curve whose set-point takes a few values
 _BINS, _WIDEST = 40, 3
@@ -238,35 +203,50 @@ _BEYOND, _BEYOND_POINTS = 0.2, 8
 """Extrapolation beyond each end, relative to the range, and its number of points."""
 
 
-def curve(
-    slave: Slave, every: Mapping[str, Value], logs: Sequence[LearnedLog], points: MeasuredPoints
-) -> Curve:
+def curve(estimator: Estimator, logs: Sequence[LearnedLog], points: MeasuredPoints) -> Curve:
     """Computes torque and stiffness by deformation, at each set-point with data.
 
-    The slave does not change. With the method FilteredRegression, the curve has the standard
-    deviations tau_e_std and sigma_std at each point.
+    With the method FilteredRegression, the curve has the standard deviations tau_e_std and
+    sigma_std at each point.
 
-    every   parameters of the slave
-    logs    logs that the slave has processed; the last is the present log
-    points  measured points of the last log
+    estimator  for one joint; it does not change
+    logs       logs that the estimator has processed; the last is the present log
+    points     measured points of the last log
     """
     covered = union([log.phi for log in logs]), union([log.set_point for log in logs])
-    polynomial = sheet.polynomial(sheet.start_values(slave, every), *covered)
+    polynomial = sheet.polynomial(sheet.start_values(estimator), *covered)
     reach = reaches(points, logs[:-1], not polynomial.is_of_set_point)
     grids = [_grid(each, polynomial) for each in reach]
-    if every["method"] == "FilteredRegression" and grids:
-        found = _evaluated(slave, every, reach, grids)
-        evaluated = (found[name] for name in ("phi", "setPoint", "tau_e", "sigma"))
-        polynomial = sheet.with_knees(polynomial, *evaluated)
-        ends = np.cumsum([len(grid) for grid in grids])[:-1]
-        values = zip(*(np.split(found[name], ends) for name in _OUTPUTS[:4]), strict=True)
-        parts = zip(reach, grids, values, strict=True)
-        return Curve(polynomial, [Branch(*at, phi, *own) for at, phi, own in parts])
+    (parameters,) = estimator.parameters
+    if parameters["method"] == "FilteredRegression" and grids:
+        return _evaluated(estimator, polynomial, reach, grids)
     branches = []
     for at, phi in zip(reach, grids, strict=True):
         tau_e, sigma = polynomial.at(phi, at.set_point)
         branches.append(Branch(*at, phi, tau_e, None, sigma, None))
     return Curve(polynomial, branches)
+
+
+def _evaluated(
+    estimator: Estimator, polynomial: Polynomial, reach: Sequence[Reach], grids: Sequence[Array]
+) -> Curve:
+    """Computes the curve by Estimator.evaluate. The polynomial is fitted to it, if it has knees."""
+    found = [estimator.evaluate(phi, at.set_point) for at, phi in zip(reach, grids, strict=True)]
+    tau_e = [values["tau_e"] for values in found]
+    sigma = [values["sigma"] for values in found]
+    set_points = np.repeat([at.set_point for at in reach], [len(phi) for phi in grids])
+    fitted = sheet.with_knees(
+        polynomial,
+        np.concatenate(grids),
+        set_points,
+        np.concatenate(tau_e),
+        np.concatenate(sigma),
+    )
+    branches = [
+        Branch(*at, phi, *(values[name] for name in ("tau_e", "tau_e_std", "sigma", "sigma_std")))
+        for at, phi, values in zip(reach, grids, found, strict=True)
+    ]
+    return Curve(fitted, branches)
 
 
 def union(ranges: Sequence[Range | None]) -> Range | None:
@@ -285,22 +265,6 @@ def _grid(reach: Reach, polynomial: Polynomial) -> Array:
     below = np.linspace(min(low - further, known), low, _BEYOND_POINTS)
     above = np.linspace(high, max(high + further, known), _BEYOND_POINTS)
     return np.unique([*inside, *below, *above, known, *characteristic(reach.phi)])
-
-
-def _evaluated(
-    slave: Slave, every: Mapping[str, Value], reach: Sequence[Reach], grids: Sequence[Array]
-) -> dict[str, Array]:
-    """Computes the outputs _OUTPUTS at each point of each grid, with a copy of the estimator."""
-    scale, offset = float(every["setPoint.scale"]), float(every["setPoint.offset"])
-    points = [
-        (0.0, phi, (each.set_point - offset) / scale if scale else 0.0)
-        for each, grid in zip(reach, grids, strict=True)
-        for phi in grid
-    ]
-    with Slave(slave.fmu, "curve") as other:
-        other.initialize(every)
-        t_0, T = other.restore(slave.saved()), float(every["samplePeriod"])
-        return stiffness_at(other, ("theta", "q", "theta_c"), np.array(points), t_0, T)
 
 
 @dataclass(frozen=True)

@@ -5,11 +5,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
+from sigmahat.estimator.estimator import Estimator
 from sigmahat.files import toml_file
 from sigmahat.files.output import sha256
 from sigmahat.fmi.installed import version
-from sigmahat.fmi.instance import Slave, Value
-from sigmahat.fmi.sample_loop import present_values
+from sigmahat.fmi.model import Value, installed_model
 from sigmahat.recording import several_joints
 from sigmahat.recording.configuration import Configuration
 from sigmahat.result import sheet
@@ -74,43 +74,41 @@ _AMPLITUDE_95 = 2.4477
 
 def data_sheet(replay: Replay, curve: Curve) -> sheet.Sheet:
     """Creates the data sheet from the estimator at the end of a replay, and from its curve."""
-    slave, every, configuration = replay.slave, replay.every, replay.configuration.path
+    parameters, configuration = replay.parameters, replay.configuration.path
     identified = _identified(replay.configuration)
     last, doubt = replay.statistics.last, replay.statistics.last_doubt
-    start = {**sheet.start_values(slave, every), **sheet.start_of(curve.polynomial)}
+    start = {**sheet.start_values(replay.estimator), **sheet.start_of(curve.polynomial)}
     claims = replay.method == "FilteredRegression"
     sigma, half = last["sigma"], NORMAL_95 * last["sigma_std"]
     interval = (sigma - half, sigma + half) if claims else None
-    with Slave(slave.fmu, "check") as other:  # it is asked before any sample
-        other.initialize(start)
-        check = sheet.Check(**present_values(other, ["sigma", "tau_e"]))
+    fresh = Estimator(start)  # it is asked before any sample
     return sheet.Sheet(
         format=sheet.FORMAT.name,
         version=sheet.FORMAT.version,
         sigmahat=version(),
         units=sheet.UNITS,
-        fmu=FmuId.of(slave.fmu),
+        fmu=FmuId.of(installed_model("StiffnessEstimator")),
         logs=replay.logs,
         configuration=sheet.Source(
             str(configuration), sha256(configuration) if configuration.is_file() else None
         ),
         method=replay.method,
-        modality=str(every["modality"]),
+        modality=str(parameters["modality"]),
         at_the_end=sheet.Stiffness(last["phi"], last["setPoint"], sigma, interval),
         confident=doubt == "None",
         doubt=doubt,
         misfit=last["misfit"],
         polynomial=curve.polynomial,
         curve=_points(curve) if claims else None,
-        parameters=_parameters(every, last, identified),
+        parameters=_parameters(parameters, last, identified),
         rests_on=sheet.RestsOn(
-            torque_gain=float(every["prior.torque_gain"]),
+            torque_gain=float(parameters["prior.torque_gain"]),
             sigma_per_gain=last["sigma_per_gain"],
-            exact=[f"motor.{name}" for name in exact(every)],
-            absent=list(absent(every)),
+            exact=[f"motor.{name}" for name in exact(parameters)],
+            absent=list(absent(parameters)),
         ),
         start_values=start,
-        check=check,
+        check=sheet.Check(sigma=fresh.output("sigma"), tau_e=fresh.output("tau_e")),
     )
 
 

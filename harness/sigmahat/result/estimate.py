@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 
 from sigmahat.files.output import sha256, write_json
 from sigmahat.files.tables import write_csv
-from sigmahat.fmi.instance import Slave, Value, installed
-from sigmahat.fmi.sample_loop import present_values
+from sigmahat.fmi.model import Value, installed_model
 from sigmahat.fmi.series import Series
 from sigmahat.recording.configuration import Configuration
 from sigmahat.recording.log import Log
@@ -128,52 +127,50 @@ def estimate(
     progress is called from time to time with the thousandths of the log done since the last call.
     With start_from, a folder of results or its state.json, the estimator starts from this state.
 
-    Raises LogError if log, configuration and start_from do not fit together, FmuError if the FMU
-    refuses, and ModuleNotFoundError without the package mcap.
+    Raises LogError if log, configuration and start_from do not fit together, and
+    ModuleNotFoundError without the package mcap.
     """
     learned = None if start_from is None else read_learned(Path(start_from))
-    with Slave(installed("StiffnessEstimator"), "estimator") as slave:
-        replay = Replay(slave, log, configuration, learned)
-        if folder is None:
-            kept: list[Mapping[str, NDArray[Any]]] = []
-            replay.run(kept.append, progress)
-            values = {name: np.concatenate([each[name] for each in kept]) for name in kept[0]}
-            t = replay.samples.T * np.arange(len(replay.samples.values), dtype=np.float64)
-            series = Series.of(slave.fmu, values, replay.every, t)
-            return replace(_result(replay, replay.answer().curve), series=series)
-        folder, fmu = Path(folder), slave.fmu
-        units = {name: fmu.variable(name).unit for name in OUTPUTS}
-        with ExitStack() as files:
-            table = files.enter_context(EstimateWriter(log, replay.samples, units, folder))
-            adds: list[Callable[[Mapping[str, NDArray[Any]]], object]] = [table.add]
-            if mcap:
-                adds.append(files.enter_context(mcap_file(folder / MCAP, fmu, replay.samples.T)))
-            digest = sha256(log.path)
-            replay.run(lambda outputs: [add(outputs) for add in adds], progress, digest)
-        write_learned(slave, replay.every, replay.logs, folder / LEARNED.file)
-        answered = replay.answer()
-        write_json(asdict(data_sheet(replay, answered.curve)), folder / sheet.FORMAT.file)
-        result = _result(replay, answered.curve)
-        write_curve(answered.curve, folder / CURVE)
-        write_points(answered.points, folder / POINTS)
-        replayed = Replayed(
-            *(REPLAYED.name, REPLAYED.version, str(log.path)),
-            *(result.ticks, result.skipped, result.T),
-            changes=[each.t for each in result.changes],
-            doubt=replay.statistics.doubts,
-            notes=[*result.notes, *(each.in_words for each in result.changes)],
-            findings=findings,
-        )
-        write_json(asdict(replayed), folder / REPLAYED.file)
-        _save_figure(replay, answered, folder)
-        return result
+    replay = Replay(log, configuration, learned)
+    model = installed_model("StiffnessEstimator")
+    if folder is None:
+        kept: list[Mapping[str, NDArray[Any]]] = []
+        replay.run(kept.append, progress)
+        values = {name: np.concatenate([each[name] for each in kept]) for name in kept[0]}
+        t = replay.samples.T * np.arange(len(replay.samples.values), dtype=np.float64)
+        series = Series.of(model, values, replay.parameters, t)
+        return replace(_result(replay, replay.answer().curve), series=series)
+    folder = Path(folder)
+    units = {name: model.variable(name).unit for name in OUTPUTS}
+    with ExitStack() as files:
+        table = files.enter_context(EstimateWriter(log, replay.samples, units, folder))
+        adds: list[Callable[[Mapping[str, NDArray[Any]]], object]] = [table.add]
+        if mcap:
+            adds.append(files.enter_context(mcap_file(folder / MCAP, model, replay.samples.T)))
+        digest = sha256(log.path)
+        replay.run(lambda outputs: [add(outputs) for add in adds], progress, digest)
+    write_learned(replay.estimator, replay.logs, folder / LEARNED.file)
+    answered = replay.answer()
+    write_json(asdict(data_sheet(replay, answered.curve)), folder / sheet.FORMAT.file)
+    result = _result(replay, answered.curve)
+    write_curve(answered.curve, folder / CURVE)
+    write_points(answered.points, folder / POINTS)
+    replayed = Replayed(
+        *(REPLAYED.name, REPLAYED.version, str(log.path)),
+        *(result.ticks, result.skipped, result.T),
+        changes=[each.t for each in result.changes],
+        doubt=replay.statistics.doubts,
+        notes=[*result.notes, *(each.in_words for each in result.changes)],
+        findings=findings,
+    )
+    write_json(asdict(replayed), folder / REPLAYED.file)
+    _save_figure(replay, answered, folder)
+    return result
 
 
 def _result(replay: Replay, found: Curve) -> Estimate:
-    samples, statistics, every = replay.samples, replay.statistics, replay.every
+    samples, statistics, every = replay.samples, replay.statistics, replay.parameters
     last, doubts, before = statistics.last, statistics.doubts, [e.file for e in replay.logs[:-1]]
-    n, m = int(every["rls.n"]), int(every["rls.m"])
-    eta = present_values(replay.slave, (f"eta[{i},{j}]" for i in range(n) for j in range(m)))
     continued = [f"continued from what was learned from {', '.join(before)}"] if before else []
     return Estimate(
         log=replay.log.path,
@@ -190,7 +187,7 @@ def _result(replay: Replay, found: Curve) -> Estimate:
         tau_e_range=statistics.later["tau_e"],
         phi_range=statistics.later["phi"],
         epsilon_rms=statistics.rms,
-        eta=np.reshape([*eta.values()], (n, m)).tolist(),
+        eta=replay.estimator.eta.tolist(),
         motor={name: last[name] for name in _MOTOR},
         joint={name: last[name] for name in last if name.endswith("_hat") and name not in _MOTOR},
         sigma_per_gain=last["sigma_per_gain"],

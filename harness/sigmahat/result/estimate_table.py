@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 
 from sigmahat.files import tables
 from sigmahat.files.output import finite
-from sigmahat.fmi.instance import Fmu
+from sigmahat.fmi.model import Model
 from sigmahat.fmi.series import schema
 from sigmahat.recording.log import Log, LogError
 from sigmahat.recording.readers.csv_parquet import CsvLog, ParquetLog
@@ -144,7 +144,7 @@ _TOPIC = "/estimate"
 
 @contextmanager
 def mcap_file(
-    path: Path, fmu: Fmu, T: float
+    path: Path, model: Model, T: float
 ) -> Iterator[Callable[[Mapping[str, NDArray[Any]]], None]]:
     """Yields a function that writes a message for each of the next ticks, which are T [s] apart.
 
@@ -161,7 +161,7 @@ def mcap_file(
         def add(outputs: Mapping[str, NDArray[Any]]) -> None:
             nonlocal ticks, channel
             if not ticks:
-                data = json.dumps(schema(fmu, outputs)).encode()
+                data = json.dumps(schema(model, outputs)).encode()
                 described = writer.register_schema("estimate", "jsonschema", data)
                 channel = writer.register_channel(_TOPIC, "json", described)
             columns = [finite(values.tolist()) for values in outputs.values()]

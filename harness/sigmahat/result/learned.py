@@ -1,21 +1,20 @@
 """Writes and reads `state.json`: the estimator state after a log, to continue with the next log.
 
-The JSON file contains the identity of the FMU, the logs, and the state from fmi2SerializeFMUstate
-in base64. The FMU state contains the parameters of the estimator.
+The JSON file contains the identity of the estimator, the logs, and the bytes of Estimator.save() in
+base64. These bytes contain the parameters of the estimator.
 """
 
 import base64
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+from sigmahat.estimator.estimator import Estimator
 from sigmahat.files.output import write_json
 from sigmahat.fmi.installed import version
-from sigmahat.fmi.instance import FmuError, Slave, Value
-from sigmahat.fmi.sample_loop import present_values
+from sigmahat.fmi.model import installed_model
 from sigmahat.recording.log import LogError
-from sigmahat.recording.replay import gap
 from sigmahat.result.stored import NO_OTHER_KEYS, FmuId, Format, LearnedLog, Text
 
 _AGAIN = "run `sigmahat estimate` on the first log again"
@@ -27,9 +26,9 @@ class Learned:
     """The contents of `state.json` that are needed to continue an estimation."""
 
     path: Path  # path of the file
-    fmu: FmuId  # identity of the FMU of the state
-    logs: Sequence[LearnedLog]  # logs that the FMU has processed, in this order
-    state: bytes  # state of the FMU
+    fmu: FmuId  # identity of the FMU with the same estimator
+    logs: Sequence[LearnedLog]  # logs that the estimator has processed, in this order
+    state: bytes  # of Estimator.save()
 
 
 @dataclass(frozen=True)
@@ -48,22 +47,21 @@ class _File:
     state: Text
 
 
-LEARNED = Format("state.json", "sigmahat learned state", 1, _File)  # format of the file
+LEARNED = Format("state.json", "sigmahat learned state", 2, _File)  # format of the file
 
 
-def write_learned(
-    slave: Slave, every: Mapping[str, Value], logs: Sequence[LearnedLog], path: Path
-) -> None:
-    """Writes the state of a slave after the logs; `every` contains the parameters of the slave."""
+def write_learned(estimator: Estimator, logs: Sequence[LearnedLog], path: Path) -> None:
+    """Writes the state of an estimator of one joint after the logs."""
+    (parameters,) = estimator.parameters
     contents = _File(
         format=LEARNED.name,
         version=LEARNED.version,
         sigmahat=version(),
-        fmu=FmuId.of(slave.fmu),
-        method=str(every["method"]),
+        fmu=FmuId.of(installed_model("StiffnessEstimator")),
+        method=str(parameters["method"]),
         logs=list(logs),
-        parameters={n: v for n, v in every.items() if v or not n.startswith("rls.eta_0")},
-        state=base64.b64encode(slave.saved()).decode(),
+        parameters={n: v for n, v in parameters.items() if v or not n.startswith("rls.eta_0")},
+        state=base64.b64encode(estimator.save()).decode(),
     )
     write_json(asdict(contents), path)
 
@@ -85,31 +83,30 @@ def read_learned(path: Path) -> Learned:
     return Learned(path, file.fmu, file.logs, state)
 
 
-def go_on(slave: Slave, learned: Learned, every: Mapping[str, Value], configuration: Path) -> float:
-    """Restores a saved state in an initialised slave. Filters start again with the next sample.
+def continue_from(learned: Learned, estimator: Estimator, configuration: Path) -> None:
+    """Restores a saved state in an estimator. Its filters start again with the next sample.
 
-    every          parameters of the slave
+    estimator      for one joint, with the parameters of the configuration
     configuration  the file that contains these parameters, for messages
 
-    Returns the present time of the slave [s]. Raises LogError if the state is damaged, or is the
-    state of another FMU or with other parameters.
+    Raises LogError if the state is damaged, of another version, or with other parameters.
     """
-    theirs, ours = learned.fmu, FmuId.of(slave.fmu)
+    theirs, ours = learned.fmu, FmuId.of(installed_model("StiffnessEstimator"))
     if theirs != ours:
         told, wanted = (f"{f.name}.fmu {f.version} ({f.guid})" for f in (theirs, ours))
         raise LogError(f"{learned.path}: state of {told}, expected {wanted}; {_AGAIN}")
+    (configured,) = estimator.parameters
     try:
-        t_0 = slave.restore(learned.state)
-    except FmuError as error:
+        estimator.restore(learned.state)
+    except ValueError as error:
         raise LogError(f"{learned.path}: damaged: {error}; {_AGAIN}") from error
-    names = [name for name, v in slave.fmu.variables.items() if v.causality == "parameter"]
-    own = present_values(slave, names)
-    if differ := [name for name in every if own[name] != every[name]]:
+    (saved,) = estimator.parameters
+    if differ := [name for name, value in configured.items() if saved[name] != value]:
         first = {"method": 0, "samplePeriod": 1}
         name = min(differ, key=lambda each: first.get(each, 2))
         more = f" (and {len(differ) - 1} more)" if len(differ) > 1 else ""
         raise LogError(
-            f"{configuration}: {name} = {every[name]}, but {learned.path} was written with "
-            f"{own[name]}{more}; {_OTHER}"
+            f"{configuration}: {name} = {configured[name]}, but {learned.path} was written with "
+            f"{saved[name]}{more}; {_OTHER}"
         )
-    return gap(slave, t_0, every)
+    estimator.restart_filters()

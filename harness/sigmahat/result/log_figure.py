@@ -52,7 +52,7 @@ def _over_time(replay: Replay) -> list[Panel]:
     signals = {name: statistics.ends(name) for name in DRAWN}
     if replay.method != "FilteredRegression":
         del signals["sigma_std"]  # the method gives no interval
-    if replay.every["modality"] == "Sensor":
+    if replay.parameters["modality"] == "Sensor":
         del signals["tau_e_residual"]
         sensor = samples.values[:, list(samples.names).index("tau_e_sensor")]
         signals["plant.tau_e_measured"] = extremes(sensor, statistics.bucket)

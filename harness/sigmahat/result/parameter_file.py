@@ -11,7 +11,7 @@ from typing import Any
 
 from sigmahat.files.output import write_whole
 from sigmahat.files.templates import environment
-from sigmahat.fmi.instance import Fmu
+from sigmahat.fmi.model import Model
 from sigmahat.result.sheet import Sheet, origin
 
 _CURVE = "rls.eta_0["
@@ -35,20 +35,20 @@ class _Start:
         return repr(self.value)
 
 
-def write(sheet: Sheet, fmu: Fmu, kind: str, path: Path) -> None:
+def write(sheet: Sheet, model: Model, kind: str, path: Path) -> None:
     """Writes the start values of a sheet for this FMU; kind is a key of KINDS.
 
     Raises ValueError for a start value that does not fit the FMU, and for a file name that cannot
     be the name of the contents.
     """
-    write_whole(KINDS[kind](sheet, fmu, list(_starts(sheet, fmu)), path.stem), path)
+    write_whole(KINDS[kind](sheet, model, list(_starts(sheet, model)), path.stem), path)
 
 
-def _starts(sheet: Sheet, fmu: Fmu) -> Iterator[_Start]:
+def _starts(sheet: Sheet, model: Model) -> Iterator[_Start]:
     for name, value in sheet.start_values.items():
-        variable = fmu.variable(name, "parameter")
-        number = fmu.number(name, value)
-        item = fmu.items(name)[int(number)] if variable.type == "Enumeration" else ""
+        variable = model.variable(name, "parameter")
+        number = model.number(name, value)
+        item = model.items(name)[int(number)] if variable.type == "Enumeration" else ""
         yield _Start(name, variable, number, item)
 
 
@@ -58,13 +58,13 @@ def _head(sheet: Sheet) -> Iterator[str]:
     yield from origin(sheet)
 
 
-def _ssv(sheet: Sheet, fmu: Fmu, starts: list[_Start], name: str) -> str:
+def _ssv(sheet: Sheet, model: Model, starts: list[_Start], name: str) -> str:
     """Formats a parameter set of SSP 1.0, which tools for SSP 2.0 can read as well.
 
     Importers disagree on the form of Booleans and enumerations. Therefore such a value is written
     only if the value differs from the default of the FMU.
     """
-    numbers, own = ("Real", "Integer"), fmu.parameters({})
+    numbers, own = ("Real", "Integer"), model.parameters({})
     listed = [s for s in starts if s.variable.type in numbers or own[s.name] != (s.item or s.value)]
     units = {s.variable.unit for s in listed}
     if re.search(r"[\x00-\x1f\ud800-\udfff\ufffe\uffff]", name):
@@ -76,11 +76,11 @@ def _ssv(sheet: Sheet, fmu: Fmu, starts: list[_Start], name: str) -> str:
         element=name,
         comments=_head(sheet),
         parameters=[(s.variable, s.item or s.text) for s in listed],
-        units=[unit for unit in fmu.description.unitDefinitions if unit.name in units],
+        units=[unit for unit in model.description.unitDefinitions if unit.name in units],
     )
 
 
-def _matlab(sheet: Sheet, fmu: Fmu, starts: list[_Start], name: str) -> str:
+def _matlab(sheet: Sheet, model: Model, starts: list[_Start], name: str) -> str:
     """Formats a MATLAB function that returns a structure: parameter motor.B is field motor.B."""
     _identifier(name)
     lines = [f"function p = {name}", f"%{name.upper()} {sheet.fmu.name}: what was learned."]
@@ -97,7 +97,7 @@ def _matlab(sheet: Sheet, fmu: Fmu, starts: list[_Start], name: str) -> str:
     return "\n".join(lines)
 
 
-def _modelica(sheet: Sheet, fmu: Fmu, starts: list[_Start], name: str) -> str:
+def _modelica(sheet: Sheet, model: Model, starts: list[_Start], name: str) -> str:
     """Formats a Modelica record: parameter motor.B is component motor.B; model becomes 'model'."""
     _identifier(name)
     single, curve = _divided(starts)
@@ -172,7 +172,7 @@ def _identifier(name: str) -> None:
         )
 
 
-KINDS: Mapping[str, Callable[[Sheet, Fmu, list[_Start], str], str]] = {
+KINDS: Mapping[str, Callable[[Sheet, Model, list[_Start], str], str]] = {
     "ssv": _ssv,
     "matlab": _matlab,
     "modelica": _modelica,

@@ -10,10 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sigmahat.estimator.powers import powers_of_phi
-from sigmahat.fmi.instance import Slave, Value
+from sigmahat.fmi.model import Value
 from sigmahat.recording.configuration import Configuration
+from sigmahat.recording.estimator_parameters import all_parameters
 from sigmahat.recording.log import Array, Log
-from sigmahat.recording.replay import OUTPUTS, parameters, play
+from sigmahat.recording.replay import OUTPUTS, RECORDED, estimator_for, play
 from sigmahat.recording.resampling import sample
 from sigmahat.result.curve_of_log import (
     NEEDED,
@@ -26,7 +27,7 @@ from sigmahat.result.curve_of_log import (
     since_change,
     spread,
 )
-from sigmahat.result.learned import Learned, go_on
+from sigmahat.result.learned import Learned, continue_from
 from sigmahat.result.stored import LearnedLog, Range
 
 _BUCKETS = 4000
@@ -123,6 +124,12 @@ class StiffnessChange:
         return f"the stiffness changed by {100 * self.relative:+.0f} % at {self.t:.4g} s"
 
 
+def coefficients(parameters: Mapping[str, Value]) -> list[str]:
+    """Returns the names of the outputs with the coefficients of the torque, (21)."""
+    n, m = int(parameters["rls.n"]), int(parameters["rls.m"])
+    return [f"eta[{i},{j}]" for i in range(n) for j in range(m)]
+
+
 class Changes:
     """Collects changes of the stiffness from the outputs of a replay.
 
@@ -130,12 +137,12 @@ class Changes:
     change counts only after a confident estimate since the last change.
     """
 
-    def __init__(self, every: Mapping[str, Value], T: float) -> None:
-        """every  parameters of the estimator"""
-        n, m = int(every["rls.n"]), int(every["rls.m"])
-        self.names = [f"eta[{i},{j}]" for i in range(n) for j in range(m)]
+    def __init__(self, parameters: Mapping[str, Value], T: float) -> None:
+        """parameters  all parameters of the estimator; T  time between ticks [s]"""
+        n, m = int(parameters["rls.n"]), int(parameters["rls.m"])
+        self.names = coefficients(parameters)
         """Names of the required outputs besides change_age, confident, phi and setPoint."""
-        self._powers = np.repeat(powers_of_phi(bool(every["rls.symmetric"]), n), m)
+        self._powers = np.repeat(powers_of_phi(bool(parameters["rls.symmetric"]), n), m)
         self._powers_of_set_point = np.tile(np.arange(m), n)
         self._T, self._ticks, self._age, self._followed = T, 0, -1.0, True
         self._eta: NDArray[np.float64] | None = None  # at the last confident tick since a change
@@ -176,25 +183,24 @@ class Replay:
     """Replays every row of a log once through an estimator."""
 
     def __init__(
-        self, slave: Slave, log: Log, configuration: Configuration, learned: Learned | None = None
+        self, log: Log, configuration: Configuration, learned: Learned | None = None
     ) -> None:
-        """Initialises the slave, restores the state from earlier logs, and samples the log.
+        """Starts an estimator, restores its state from earlier logs, and samples the log.
 
-        Raises LogError if log or state do not fit the configuration, FmuError if the FMU refuses.
+        Raises LogError if log or state do not fit the configuration.
         """
-        start = parameters(slave.fmu, configuration)
-        self.slave, self.log, self.configuration = slave, log, configuration
-        self.every = slave.fmu.parameters(start)  # all parameters of the estimator
-        configuration.need_ports(str(self.every["modality"]))
-        slave.initialize(start)
-        # The state is restored before the log is read, because this step may fail.
-        self.t = 0.0 if learned is None else go_on(slave, learned, self.every, configuration.path)
-        """Present time of the estimator [s]."""
-        self.samples = sample(log, configuration, float(self.every["samplePeriod"]))
+        self.log, self.configuration = log, configuration
+        self.parameters = all_parameters(configuration)  # of the estimator
+        self.method = str(self.parameters["method"])  # method of the estimator
+        configuration.need_ports(str(self.parameters["modality"]))
+        record = (*RECORDED, *coefficients(self.parameters))
+        self.estimator = estimator_for(configuration, record)
+        if learned is not None:  # before the log is read, because this step may fail
+            continue_from(learned, self.estimator, configuration.path)
+        self.samples = sample(log, configuration, float(self.parameters["samplePeriod"]))
         self.statistics = ReplayStatistics(len(self.samples.values))
-        self.changes = Changes(self.every, self.samples.T)
+        self.changes = Changes(self.parameters, self.samples.T)
         """Changes of the stiffness in the replayed part of the log."""
-        self.method = str(self.every["method"])  # method of the estimator
         self.logs = [] if learned is None else list(learned.logs)
         """Logs that the estimator has processed; at the end also the present log."""
 
@@ -208,18 +214,15 @@ class Replay:
         last call. The argument digest is the SHA-256 of the log, which is stored with the state.
         """
         statistics, ticks, done = self.statistics, len(self.samples.values), 0
-        of_curve = self.changes.names
         chunk = statistics.bucket * max(1, _CHUNK // statistics.bucket)
-        for outputs in play(self.slave, self.samples, chunk, self.t, of_curve):
-            self.changes.add(outputs)
-            for name in of_curve:
-                del outputs[name]
+        for recorded in play(self.estimator, self.samples, chunk):
+            self.changes.add(recorded)
+            outputs = {name: recorded[name] for name in RECORDED}
             statistics.add(outputs)
             add(outputs)
             now = done + len(outputs["valid"])
             progress(1000 * now // ticks - 1000 * done // ticks)
             done = now
-        self.t += self.samples.T * ticks
         phi, set_point = (statistics.used.get(name) for name in _OPERATION)
         file = str(self.log.path)
         self.logs.append(LearnedLog(file, digest, ticks, statistics.skipped, phi, set_point))
@@ -228,5 +231,5 @@ class Replay:
         """Computes the curve and its measured points at the end of the replay."""
         parts = self.statistics.points.items()
         outputs = since_change({name: np.concatenate(of_chunks) for name, of_chunks in parts})
-        found = curve(self.slave, self.every, self.logs, points_of(outputs, self.method))
+        found = curve(self.estimator, self.logs, points_of(outputs, self.method))
         return Answer(found, shown_points(outputs, self.method), self.statistics.last_doubt)

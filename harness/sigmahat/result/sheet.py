@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic.dataclasses import dataclass
 
+from sigmahat.estimator.estimator import Estimator
 from sigmahat.estimator.powers import powers_of_phi
-from sigmahat.fmi.instance import Slave, Value
-from sigmahat.fmi.sample_loop import present_values
+from sigmahat.fmi.model import Value, installed_model
 from sigmahat.result.stored import NO_OTHER_KEYS, FmuId, Format, LearnedLog, Range, Text
 
 Array = NDArray[np.float64]
@@ -219,30 +219,32 @@ _NONE = 1e-6  # uncertainty of a curve: so small that the curve does not change
 _LARGEST = 1e12  # largest prior that the FMU accepts
 
 
-def start_values(slave: Slave, every: Mapping[str, Value]) -> dict[str, Value]:
-    """Returns start values of an FMU from the present curve and motor data of a slave.
+def start_values(estimator: Estimator) -> dict[str, Value]:
+    """Returns start values of the FMU from the present curve and motor data of an estimator.
 
     FilteredRegression may use higher powers than given by rls.n and rls.m; all powers are returned.
-    Priors do not change: the new FMU takes the curve as the mean of its prior. The uncertainty of
-    the curve is lost.
+    Priors do not change: the FMU takes the curve as the mean of its prior. The uncertainty of the
+    curve is lost.
 
-    every  parameters of the slave
+    estimator  for one joint
     """
-    eta = [name for name in slave.fmu.variables if name.startswith("eta[")]
-    found = present_values(slave, [*eta, "B_hat", "D_theta_hat"])
+    model, (parameters,) = installed_model("StiffnessEstimator"), estimator.parameters
+    eta = [name for name in model.variables if name.startswith("eta[")]
+    values = {name: estimator.output(name) for name in eta}
     at = {name: tuple(map(int, name[4:-1].split(","))) for name in eta}
-    used = [at[name] for name in eta if found[name]]
-    n = max([int(every["rls.n"]), *(i + 1 for i, _ in used)])
-    m = max([int(every["rls.m"]), *(j + 1 for _, j in used)])
-    start = {name: value for name, value in every.items() if not name.startswith(_CURVE)}
+    used = [at[name] for name in eta if values[name]]
+    n = max([int(parameters["rls.n"]), *(i + 1 for i, _ in used)])
+    m = max([int(parameters["rls.m"]), *(j + 1 for _, j in used)])
+    start = {name: value for name, value in parameters.items() if not name.startswith(_CURVE)}
     start |= {"rls.n": n, "rls.m": m}
-    for name, value in (("motor.B", found["B_hat"]), ("motor.D_theta", found["D_theta_hat"])):
+    for name in ("B", "D_theta"):
+        value = estimator.output(f"{name}_hat")
         if value > 0:  # the FMU refuses other values, and `doubt` reports such values
-            start[name] = value
+            start[f"motor.{name}"] = value
     for name, (i, j) in at.items():
         if i < n and j < m:
-            start[f"{_CURVE}{i},{j}]"] = found[name]
-    kinds = {name: slave.fmu.variable(name).type for name in start}
+            start[f"{_CURVE}{i},{j}]"] = values[name]
+    kinds = {name: model.variable(name).type for name in start}
     return {n: bool(v) if kinds[n] == "Boolean" else v for n, v in start.items()}
 
 

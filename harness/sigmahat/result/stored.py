@@ -9,7 +9,7 @@ from typing import Annotated, Any, Generic, TypeVar
 
 from pydantic import ConfigDict, Strict, TypeAdapter, ValidationError
 
-from sigmahat.fmi.instance import Fmu
+from sigmahat.fmi.model import Model
 
 NO_OTHER_KEYS = ConfigDict(extra="forbid")
 Text = Annotated[str, Strict()]
@@ -42,9 +42,9 @@ class FmuId:
     guid: Text
 
     @staticmethod
-    def of(fmu: Fmu) -> FmuId:
-        """Returns the identity of an FMU."""
-        return FmuId(fmu.name, fmu.description.version or "", fmu.description.guid)
+    def of(model: Model) -> FmuId:
+        """Returns the identity of the FMU of a model."""
+        return FmuId(model.name, model.description.version or "", model.description.guid)
 
 
 _Contents = TypeVar("_Contents")

@@ -10,16 +10,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sigmahat.estimator.estimator import Estimator
 from sigmahat.files.output import sha256
-from sigmahat.fmi.instance import Fmu, Slave, Value, installed
+from sigmahat.fmi.model import Value
 from sigmahat.motor.noise import low_pass
 from sigmahat.recording.configuration import Configuration
+from sigmahat.recording.estimator_parameters import all_parameters
 from sigmahat.recording.log import Array, Log, LogError
-from sigmahat.recording.replay import gap, parameters, play
+from sigmahat.recording.replay import play
 from sigmahat.recording.resampling import Samples, stretches, turns_from
 from sigmahat.result import sheet
 from sigmahat.result.curve import NORMAL_95
-from sigmahat.result.curve_of_log import stiffness_at, union
+from sigmahat.result.curve_of_log import union
 from sigmahat.result.learned import read_learned
 from sigmahat.result.replayed_log import Replay
 from sigmahat.result.stored import LearnedLog
@@ -63,7 +65,7 @@ class TorqueError:
 
 
 def torque_errors(
-    fmu: Fmu, samples: Samples, start: Mapping[str, Value]
+    samples: Samples, start: Mapping[str, Value]
 ) -> tuple[TorqueError | None, TorqueError | None]:
     """The error at all instants that count, and the error below 2 Hz; None without such instants.
 
@@ -71,14 +73,14 @@ def torque_errors(
     replay counts. If the motor is slower than regression.slow, the sign of its friction is unknown,
     and so is the torque of the spring. These instants do not count.
 
-    start  values of the FMU with which the curve does not change, sheet.as_fixed_curve
+    start  parameters with which the curve does not change, sheet.as_fixed_curve
     """
-    with Slave(fmu, "curve") as slave:
-        slave.initialize(start)
-        for _ in play(slave, samples, _CHUNK):
-            pass
-        t_0 = gap(slave, samples.T * len(samples.values), fmu.parameters(start))
-        parts = list(play(slave, samples, _CHUNK, t_0))
+    record = ("valid", "a", "theta_dot", "epsilon", "tau_e_residual")
+    estimator = Estimator(start, record, warn_of_range=False)
+    for _ in play(estimator, samples, _CHUNK):
+        pass
+    estimator.restart_filters()
+    parts = list(play(estimator, samples, _CHUNK))
     played = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
     used = played["valid"] & (played["a"] > 0)
     moving = used
@@ -126,7 +128,7 @@ class Agreement:
 def agreement(
     before: Mapping[str, Array], alone: Mapping[str, Array], torque_gain: float
 ) -> Agreement:
-    """Compares two estimates at the same points, logs.curve.stiffness_at.
+    """Compares two estimates at the same points, both from Estimator.evaluate.
 
     torque_gain  relative standard deviation of the gain of the torque: both estimates have the same
                  error of this gain, which does not explain a difference
@@ -230,32 +232,30 @@ def validate(log: Log, configuration: Configuration, start_from: str | Path) -> 
     start_from  a folder of results of `estimate`, or its state.json
 
     Raises LogError if log, configuration and start_from do not fit together, or for Paper2011,
-    which gives no interval; FmuError if the FMU refuses.
+    which gives no interval.
     """
     learned = read_learned(Path(start_from))
-    fmu = installed("StiffnessEstimator")
-    every = fmu.parameters(parameters(fmu, configuration))
-    if every["method"] != "FilteredRegression":
+    method = all_parameters(configuration)["method"]
+    if method != "FilteredRegression":
         raise LogError(
-            f"{configuration.path}: method = {every['method']} gives no interval, which validate "
+            f"{configuration.path}: method = {method} gives no interval, which validate "
             "needs; expected method = FilteredRegression"
         )
-    with Slave(fmu, "learned") as slave:
-        job = Replay(slave, log, configuration, learned)
-        samples = job.samples
-        complete = samples.values[np.isfinite(samples.values).all(axis=1)]
-        if not len(complete):
-            raise LogError(f"{log.path}: expected values of all ports at the same time, found none")
-        points = complete[:: -(-len(complete) // _INSTANTS)]
-        start = sheet.start_values(slave, every)
-        before = stiffness_at(slave, samples.names, points, job.t, samples.T)
-        at = (before[name] for name in ("phi", "setPoint", "tau_e", "sigma"))
-        start |= sheet.start_of(sheet.with_knees(sheet.polynomial(start, None, None), *at))
-    with Slave(fmu, "alone") as slave:
-        job = Replay(slave, log, configuration)
-        job.run()
-        alone = stiffness_at(slave, samples.names, points, job.t, samples.T)
-    torque, below = torque_errors(fmu, samples, sheet.as_fixed_curve(start))
+    replay = Replay(log, configuration, learned)
+    samples = replay.samples
+    phi, set_point = _points(samples, replay.parameters)
+    if not len(phi):
+        raise LogError(f"{log.path}: expected values of all ports at the same time, found none")
+    start = sheet.start_values(replay.estimator)
+    before = replay.estimator.evaluate(phi, set_point)
+    polynomial = sheet.polynomial(start, None, None)
+    start |= sheet.start_of(
+        sheet.with_knees(polynomial, phi, set_point, before["tau_e"], before["sigma"])
+    )
+    replay = Replay(log, configuration)
+    replay.run()
+    alone = replay.estimator.evaluate(phi, set_point)
+    torque, below = torque_errors(samples, sheet.as_fixed_curve(start))
     digest = sha256(log.path)
     return Validation(
         log=log.path,
@@ -266,10 +266,21 @@ def validate(log: Log, configuration: Configuration, start_from: str | Path) -> 
         ticks=len(samples.values),
         torque=torque,
         torque_below=below,
-        stiffness=agreement(before, alone, float(every["prior.torque_gain"])),
+        stiffness=agreement(before, alone, float(replay.parameters["prior.torque_gain"])),
         notes=samples.notes,
         turned=_turned(samples, configuration, learned.logs),
     )
+
+
+def _points(samples: Samples, parameters: Mapping[str, Value]) -> tuple[Array, Array]:
+    """Returns deformation [rad] and set-point [1] at up to _INSTANTS samples with all values."""
+    complete = samples.values[np.isfinite(samples.values).all(axis=1)]
+    chosen = complete[:: -(-len(complete) // _INSTANTS) or 1]
+    columns = dict(zip(samples.names, chosen.T, strict=True))
+    nothing = np.zeros(len(chosen))
+    phi = columns.get("q", nothing) - columns.get("theta", nothing)
+    scale, offset = float(parameters["setPoint.scale"]), float(parameters["setPoint.offset"])
+    return phi, offset + scale * columns.get("theta_c", nothing)
 
 
 def _turned(

@@ -10,7 +10,7 @@ from threading import Thread
 import numpy as np
 import tomlkit
 
-from sigmahat.fmi.instance import FmuError, Slave, installed
+from sigmahat.fmi.model import FmuError
 from sigmahat.guess import template
 from sigmahat.guess.columns import read_columns
 from sigmahat.guess.guess import guess, guess_chosen
@@ -145,10 +145,9 @@ class Jobs:
         checked = check(log, configuration)
         busy = "The curve ..."
         self._later(partial(self._show, version, checked=checked, problem="", busy=busy))
-        with Slave(installed("StiffnessEstimator"), "estimator") as slave:
-            replay = Replay(slave, log, configuration)
-            replay.run(progress=progress)  # an exception in progress ends it
-            found = replay.answer()
+        replay = Replay(log, configuration)
+        replay.run(progress=progress)  # an exception in progress ends it
+        found = replay.answer()
         self._later(partial(self._show, version, answer=found, busy=""))
 
     def _identify_and_estimate(self, version: int, text: str) -> None:

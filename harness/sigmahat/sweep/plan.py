@@ -16,7 +16,7 @@ from zlib import crc32
 import numpy as np
 
 from sigmahat.experiments.metrics import Indices
-from sigmahat.fmi.instance import Value
+from sigmahat.fmi.model import Value
 
 _CALL = re.compile(r"\s*(\w+)\s*\(([^()]*)\)\s*")
 _FORMS = "values 1,2,3; a range first:last:count; uniform(low,high); normal(mean,deviation)"

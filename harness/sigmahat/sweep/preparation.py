@@ -10,8 +10,9 @@ from sigmahat.experiments.engine import SEED, indices_by_comparison, measured
 from sigmahat.experiments.pool import WorkerError
 from sigmahat.experiments.scenario import PLANT, Scenario, to_record
 from sigmahat.fmi.installed import fmu as installed_fmu
-from sigmahat.fmi.instance import FmuError, Slave, Value, installed
+from sigmahat.fmi.instance import Slave, installed
 from sigmahat.fmi.master import EstimatorFmu, Plant
+from sigmahat.fmi.model import FmuError, Value
 from sigmahat.fmi.unknown_name import unknown
 from sigmahat.paper.scenarios import scenario
 from sigmahat.sweep.plan import Outcome, Plan, Run

@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 from sigmahat.experiments.metrics import INDICES, Index, Indices
 from sigmahat.experiments.scenario import PLANT, source_and_variable
 from sigmahat.files import tables
-from sigmahat.fmi.instance import Value, installed
+from sigmahat.fmi.instance import installed
+from sigmahat.fmi.model import Value
 from sigmahat.sweep.plan import Outcome, Plan
 from sigmahat.sweep.preparation import ALL, models, parameters_by_owner, reduced
 

@@ -10,7 +10,7 @@ from enum import Enum
 import numpy as np
 
 from sigmahat.experiments.scenario import Sine, Sines
-from sigmahat.fmi.instance import Value
+from sigmahat.fmi.model import Value
 
 
 @dataclass(frozen=True)

@@ -17,10 +17,9 @@ from numpy.typing import NDArray
 from sigmahat.compare.misfits.conditions import CONDITIONS, Condition
 from sigmahat.compare.misfits.experiment import JOINTS, Experiment, Joint, draw
 from sigmahat.compare.misfits.motion import Motion, run
+from sigmahat.estimator.estimator import Estimator
 from sigmahat.experiments.engine import Progress, run_all
-from sigmahat.fmi.instance import Slave, Value, installed
-from sigmahat.recording.replay import play
-from sigmahat.recording.resampling import Samples
+from sigmahat.fmi.model import Value
 
 SETTLED = 2.0  # time after the start of the torque from which an estimate is judged [s]
 DANGEROUS_ERROR, DANGEROUS_CLAIM = 0.1, 0.02
@@ -162,11 +161,9 @@ def run_once(condition: int, joint: int, seed: int) -> Score:
 
 def estimate(experiment: Experiment, motion: Motion, torque_gain: float) -> Score:
     """Computes the score of FilteredRegression on a run; torque_gain as for settings()."""
-    values = np.column_stack(list(motion.measured.values()))
-    samples = Samples(experiment.T, list(motion.measured), values)
-    with Slave(installed(ESTIMATOR), "FilteredRegression") as slave:
-        slave.initialize(settings(experiment, torque_gain))
-        (found,) = play(slave, samples, len(values))
-    judged = experiment.T * np.arange(len(values)) >= experiment.rest + SETTLED
-    outputs = (found[name][judged] for name in ("sigma", "sigma_std", "confident"))
+    names = ("sigma", "sigma_std", "confident")
+    estimator = Estimator(settings(experiment, torque_gain), names, warn_of_range=False)
+    found = estimator.run(**motion.measured)
+    judged = experiment.T * np.arange(len(motion.sigma)) >= experiment.rest + SETTLED
+    outputs = (found[name][judged] for name in names)
     return score(motion.sigma[judged], *outputs)
