@@ -12,7 +12,7 @@ from regression_joint import Joint
 
 METHODS = [{"method": 1}, {"method": 2, "rls.n": 3}, {"method": 2, "modality": SENSOR}]
 both = pytest.mark.parametrize("values", METHODS, ids=["Paper2011", "FilteredRegression", "Sensor"])
-NAMES = ("tau_e", "tau_e_std", "sigma", "sigma_std")
+NAMES = ("tau_e", "tau_e_std", "sigma", "sigma_std", "sigma_per_gain")
 
 
 def after(c: Library, values: dict[str, Any]) -> Estimator:

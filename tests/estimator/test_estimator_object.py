@@ -2,6 +2,7 @@
 
 import copy
 import pickle
+import struct
 import sys
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 import sigmahat
 from controllers import run
 from fmi_instance import OK, Instance
+from forged_states import signed
 from plant_runs import run_plant
 from recordings import one_seed
 from sigmahat.fmi.instance import installed
@@ -25,14 +27,19 @@ SETTINGS: list[dict[str, Any]] = [
     {"deformation": "Filtered", "rls.kind": "ConstantFactor", "filter.kind": "Kalman"},
     {"method": "FilteredRegression"},
     {"method": "FilteredRegression", "rls.n": 3, "regression.drift": 1e-3},
+    {"modality": "Sensor"},
+    {"modality": "Model"},
+    {"method": "FilteredRegression", "modality": "Sensor", "prior.hysteresis": 0.01},
+    {"method": "FilteredRegression", "modality": "Model"},
 ]
 
 
 @pytest.fixture(scope="module")
 def z() -> Samples:
-    """Measurements of the scenario table1, with a gap of ten samples."""
+    """Measurements of the scenario table1, with a torque sensor, and a gap of ten samples."""
     plant = one_seed("table1").recording.plant
     measured = {name: plant[f"{name}_measured"][:N].copy() for name in INPUTS}
+    measured["tau_e_sensor"] = plant["tau_e"][:N] + 0.01 * np.sin(np.arange(N))
     measured["q"][2000:2010] = np.nan
     return measured
 
@@ -40,7 +47,8 @@ def z() -> Samples:
 def by_fmu(z: Samples, start: Mapping[str, Any]) -> Samples:
     variables = installed("StiffnessEstimator").variables
     every = [name for name, v in variables.items() if v.causality == "output"]
-    inputs = np.column_stack(list(z.values()))[[*range(N), -1]]
+    inputs = np.column_stack(list(z.values()))
+    inputs = np.concatenate([inputs, inputs[-1:]])
     rows = run_plant("StiffnessEstimator", list(z), T, inputs, start, every, held=True)
     # The row of a tick is the one after the step that begins with it.
     return {name: values[1:] for name, values in rows.items()}
@@ -60,6 +68,55 @@ def test_run_gives_the_bits_of_the_fmu(start: dict[str, Any], z: Samples) -> Non
     assert estimator.eta.shape == (n, m)
     assert estimator.eta[1, 2] == expected["eta[1,2]"][-1]
     assert found.units["sigma_std"] == "N.m/rad"
+
+
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("start", SETTINGS, ids=str)
+def test_a_saved_estimator_goes_on_with_the_bits_of_the_fmu(
+    start: dict[str, Any], z: Samples
+) -> None:
+    expected = by_fmu(z, start)
+    first, second = sigmahat.Estimator(start), sigmahat.Estimator(record=list(expected))
+    first.run(**{name: each[:1500] for name, each in z.items()})
+    second.restore(first.save())
+    assert second.parameters == first.parameters and second.save() == first.save()
+    found = second.run(**{name: each[1500:] for name, each in z.items()})
+    for name, values in expected.items():
+        np.testing.assert_array_equal(found[name], values[1500:], err_msg=name)
+
+
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize(
+    "start",
+    [each for each in SETTINGS if each.get("method") == "FilteredRegression"],
+    ids=str,
+)
+def test_evaluate_gives_the_bits_of_the_fmu_after_a_gap(start: dict[str, Any], z: Samples) -> None:
+    """At the first sample after a gap, the outputs of the FMU are those at a constant deformation.
+    With rows of one sample, no computation is left for later ticks."""
+    start = {**start, "regression.decimation": 1, "rls.m": 1}
+    phi = np.linspace(-0.05, 0.05, 7)
+    nothing = np.zeros(2 * len(phi))
+    at_rest = {name: nothing for name in z} | {"q": np.column_stack([phi * np.nan, phi]).ravel()}
+    rows = by_fmu({name: np.concatenate([z[name], at_rest[name]]) for name in z}, start)
+    estimator = sigmahat.Estimator(start)
+    estimator.run(**z)
+    for name, values in estimator.evaluate(phi).items():
+        np.testing.assert_array_equal(values, rows[name][N + 1 :: 2], err_msg=name)
+
+
+@pytest.mark.parametrize(("method", "missing"), [("Paper2011", 7), ("FilteredRegression", 1)])
+def test_restarted_filters_are_those_after_missing_samples(
+    method: str, missing: int, z: Samples
+) -> None:
+    """With K_I = 300/s, Paper2011 forgets its residual after 6.7 ms."""
+    one, other = (sigmahat.Estimator({"method": method}) for _ in range(2))
+    half = {name: each[:1500] for name, each in z.items()}
+    one.run(**half)
+    other.run(**half)
+    one.restart_filters()
+    other.run(*np.full((3, missing), np.nan))
+    assert one.save() == other.save()
 
 
 @pytest.mark.parametrize("start", SETTINGS[1:3], ids=str)
@@ -160,6 +217,69 @@ def test_masked_samples_are_skipped(z: Samples) -> None:
     assert not found["valid"][mask].any()
 
 
+def test_many_joints_are_saved_together(z: Samples) -> None:
+    estimator = sigmahat.Estimator(SETTINGS[:3])
+    several = {name: np.tile(each, (3, 1)) for name, each in z.items()}
+    estimator.run(**several)
+    other = sigmahat.Estimator([{}, {}, {}])
+    other.restore(estimator.save())
+    assert other.parameters == estimator.parameters
+    np.testing.assert_array_equal(other.run(**several)["sigma"], estimator.run(**several)["sigma"])
+    with pytest.raises(ValueError, match="of another number of joints"):
+        sigmahat.Estimator().restore(estimator.save())
+
+
+HEADER, CHECKSUM = 88, 80  # places in a saved state
+
+
+def forged(state: bytes, place: int, value: float) -> bytes:
+    """A state with another value at a place, and with the right checksum."""
+    changed = bytearray(state)
+    struct.pack_into("<d", changed, place, value)
+    return signed(changed, CHECKSUM)
+
+
+@pytest.mark.parametrize(
+    ("changed", "message"),
+    [
+        (lambda state: state[: HEADER - 1], r"the state \(87 bytes\) is truncated"),
+        (lambda state: b"sigmahat" + state[8:], "not the state of an Estimator"),
+        (lambda state: state[:8] + b"\0" + state[9:], "another version of the format"),
+        (lambda state: state[:20] + b"?" + state[21:], "another version of the estimator"),
+        (lambda state: state[:12] + b"\2" + state[13:], "another number of joints"),
+        (lambda state: state[:-1], "truncated or too long"),
+        (lambda state: state + b"\0", "truncated or too long"),
+        (lambda state: state[:5000] + bytes([state[5000] ^ 1]) + state[5001:], "its checksum"),
+        (lambda state: forged(state, HEADER, -1.0), "values that an Estimator never saves"),
+        (lambda state: forged(state, HEADER, np.nan), "values that an Estimator never saves"),
+    ],
+)
+def test_bytes_that_are_no_state_are_refused_and_change_nothing(
+    changed: Callable[[bytes], bytes], message: str, z: Samples
+) -> None:
+    estimator = sigmahat.Estimator({"method": "FilteredRegression"})
+    estimator.run(**z)
+    before, parameters = estimator.save(), estimator.parameters
+    with pytest.raises(ValueError, match=message):
+        estimator.restore(changed(before))
+    assert estimator.save() == before and estimator.parameters == parameters
+
+
+def test_a_forged_state_is_refused_or_can_go_on(z: Samples) -> None:
+    """No value at any place of a state makes a tick crash or run for ever."""
+    estimator = sigmahat.Estimator({"method": "FilteredRegression"})
+    estimator.run(**z)
+    state, refused = estimator.save(), 0
+    for place in range(HEADER, len(state) - 8, len(state) // 60 // 8 * 8):
+        try:
+            estimator.restore(forged(state, place, -1e300))
+        except ValueError:
+            refused += 1
+        else:
+            estimator.run(*np.zeros((3, 20)))
+    assert refused > 0
+
+
 @pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy])
 def test_a_copy_goes_on_by_itself(copied: Any, z: Samples) -> None:
     estimator = sigmahat.Estimator({})
@@ -210,7 +330,7 @@ def test_the_estimate_is_evaluated_at_any_deformation(z: Samples) -> None:
         {"method": "FilteredRegression", "rls.n": 3, "regression.decimation": 1}
     )
     estimator.run(**z)
-    names = ("tau_e", "tau_e_std", "sigma", "sigma_std")
+    names = ("tau_e", "tau_e_std", "sigma", "sigma_std", "sigma_per_gain")
     last, memory = [estimator.output(name) for name in names], estimator._joints.memory.copy()
     found = estimator.evaluate(estimator.output("phi"), estimator.output("setPoint"))
     assert [found[name] for name in names] == pytest.approx(last, rel=1e-12)
@@ -234,6 +354,10 @@ def test_a_range_that_is_far_from_the_motion_is_warned_of_once(
     words = [each.getMessage() for each in caplog.records]
     assert len(words) == warned
     assert all(f"is up to 0.01 rad, but range.phi is {given}" in each for each in words)
+    # THEN a program that checks the range itself gets no warning.
+    silent = sigmahat.Estimator(estimator.parameters[0], warn_of_range=False)
+    silent.run(theta, q, np.cos(t))
+    assert len(caplog.records) == len(words)
 
 
 def test_an_unknown_name_of_the_package_is_an_attribute_error() -> None:

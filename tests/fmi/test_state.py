@@ -11,6 +11,7 @@ import pytest
 
 from fmi_instance import ERROR, OK, Instance
 from fmi_runs import ESTIMATORS, FMI2, PLANTS, Driver, Fmi, continue_from, names, random_steps
+from forged_states import signed
 
 each_kind = pytest.mark.parametrize("name", [*ESTIMATORS, "AwasPlant"])
 STEPS = random_steps(120, seed=1)
@@ -204,21 +205,11 @@ def test_freeing_a_state_releases_its_memory() -> None:
 HEADER, CHECKSUM, MODE = 128, 120, 12  # places in a serialised state
 
 
-def signed(state: bytearray) -> bytes:
-    """The state with its checksum: FNV-1a over all bytes but its own."""
-    state[CHECKSUM:HEADER] = bytes(8)
-    value = 14695981039346656037
-    for byte in state:
-        value = ((value ^ byte) * 1099511628211) % 2**64
-    state[CHECKSUM:HEADER] = value.to_bytes(8, "little")
-    return bytes(state)
-
-
 def forge(fmu: Instance, format_: str, place: int, value: float) -> int:
     """The status when the state of an instance is read back with another value at a place."""
     forged = bytearray(fmu.saved())
     struct.pack_into(f"<{format_}", forged, place, value)
-    status, copy = fmu.deserialise(signed(forged))
+    status, copy = fmu.deserialise(signed(forged, CHECKSUM))
     if status == OK:
         fmu.free(copy)
     return status

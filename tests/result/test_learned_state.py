@@ -92,7 +92,7 @@ def test_two_logs_are_one_log_with_a_gap(configuration: str, ticks: int, log: Co
 
 def test_what_was_learned_from_is_said_and_handed_on(learned: Shell) -> None:
     first = json.loads(Path("first/state.json").read_text())
-    assert (first["format"], first["version"]) == ("sigmahat learned state", 1)
+    assert (first["format"], first["version"]) == ("sigmahat learned state", 2)
     assert first["fmu"]["name"] == "StiffnessEstimator"
     assert first["method"] == first["parameters"]["method"] == "FilteredRegression"
     assert first["parameters"]["motor.B"] == 1.84e-5
@@ -151,6 +151,8 @@ def with_bytes(changed: Callable[[bytes], bytes]) -> Callable[[State], bytes]:
 @pytest.mark.parametrize(
     ("content", "words"),
     [
+        # Version 1 had the state of an FMU.
+        (change(version=1), "expected version 2 of the format, got 1; run `sigmahat estimate`"),
         (change(format="sigmahat joint data sheet"), "got format 'sigmahat joint data sheet'"),
         (change(fmu={"name": "StiffnessEstimator", "version": "9.9", "guid": "{0}"}), "9.9 ({0})"),
         (change(state="?"), "state is not base64"),

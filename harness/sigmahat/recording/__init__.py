@@ -1,1 +1,1 @@
-"""Recorded logs: read, converted to the inputs of the estimator, replayed through its FMU."""
+"""Recorded logs: read, converted to the inputs of the estimator, replayed."""
