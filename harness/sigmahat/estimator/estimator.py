@@ -87,7 +87,7 @@ class Estimator:
         self.parameters = [self._joints.model.parameters(each) for each in given]
         """All present parameters of each joint: given values, else values of the FMU."""
         self._tick: Callable[[Sequence[ArrayLike | None]], dict[str, Any]] | None = None
-        self._is_warned = not warn_of_range
+        self._may_warn = warn_of_range
 
     def run(
         self,
@@ -179,7 +179,7 @@ class Estimator:
     def output(self, name: str) -> Any:
         """The present value of any output: a number, or an array of shape (joints,).
 
-        A Boolean or the name of an item stands for the number of a Boolean or an enumeration.
+        A Boolean output is a bool, and an enumeration is the name of its item.
         """
         self._joints.model.variable(name, "output")
         values = self._joints.value(name)
@@ -270,13 +270,13 @@ class Estimator:
         """Logs a warning, once, if the motion is far from range.phi, by which priors are scaled."""
         for theta, q, every in zip(thetas, qs, self.parameters, strict=True):
             is_long = len(theta) * float(every["samplePeriod"]) > _LONG
-            if every["method"] != "FilteredRegression" or not is_long or self._is_warned:
+            if every["method"] != "FilteredRegression" or not is_long or not self._may_warn:
                 continue
             phi = np.abs(q - theta)
             most = float(np.max(phi, initial=0.0, where=np.isfinite(phi)))
             given = float(every["range.phi"])
             if most > _FAR * given or 0 < _WIDE * most < given:
-                self._is_warned = True
+                self._may_warn = False
                 logging.getLogger("sigmahat").warning(
                     "the deformation is up to %.3g rad, but range.phi is %.3g rad: set it to about "
                     "the largest deformation, or the stiffness may be wrong", most, given,
