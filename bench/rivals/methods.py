@@ -173,7 +173,8 @@ def _solve(X: Array, y: Array, known: Mapping[str, float]) -> tuple[Array, Array
     return beta / scale, np.linalg.inv(precision) / np.outer(scale, scale)
 
 
-METHODS: dict[str, Callable[[JointLog], Estimate]] = {
+Method = Callable[[JointLog], Estimate]
+METHODS: dict[str, Method] = {
     "FilteredRegression": _filtered_regression,
     "Paper2011": _paper2011,
     "least_squares": _least_squares,

@@ -8,8 +8,9 @@ import pytest
 
 from regression_joint import D_THETA, GAMMA, B, HardeningJoint, MisfitJoint, T
 from rivals.methods import METHODS
+from rivals.plan import SCORES, Result, Rivals, best, judged, page
 from rivals.records import Estimate, JointLog
-from rivals.score import QUANTILE, SCORES, Result, best, judge, page, score
+from sigmahat.experiments.scores import QUANTILE
 
 ERRORS = {"FilteredRegression": 0.5, "least_squares": 0.1}
 """Largest root mean square error of the stiffness [%]."""
@@ -22,6 +23,10 @@ KNOWN = {
 
 
 JOINTS = {"series_elastic": MisfitJoint, "variable_stiffness": HardeningJoint}
+
+
+def score(log: JointLog, estimated: Estimate) -> dict[str, float]:
+    return estimated.score(log).figures
 
 
 def ideal(kind: str, tau_coulomb: float = 0.01) -> JointLog:
@@ -92,7 +97,8 @@ def test_a_method_that_fails_or_is_not_finite_has_a_row_with_its_reason() -> Non
         (raises, "ZeroDivisionError: no motion"),
         (not_finite, "ValueError: not finite at 1 instants"),
     ):
-        result = judge("Paper2011", method, short_log())
+        outcome = judged(short_log(), {"Paper2011": method})
+        (result,) = Rivals(["arm"], [1], ["Paper2011"]).table([outcome])
         assert math.isnan(result.pop("seconds"))
         assert result == {"kind": "arm", "seed": 1, "method": "Paper2011", "remark": words}
 

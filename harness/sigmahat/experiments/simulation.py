@@ -1,0 +1,39 @@
+"""Runs a scenario once, with one seed, and judges its estimates by the indices of the paper."""
+
+from dataclasses import replace
+
+from sigmahat.experiments.metrics import Indices, indices
+from sigmahat.experiments.scenario import Scenario, signal_of
+from sigmahat.fmi.instance import Value, named
+from sigmahat.fmi.master import Recording, simulate
+
+SEED = "noise.seed"  # parameter of every plant
+SAMPLE_PERIOD = "noise.samplePeriod"  # parameter of the plants with noise that this version makes
+
+
+def run(scenario: Scenario, seed: int, variants: bool = False) -> Recording:
+    """Runs the scenario once, with this seed of the plant's noise.
+
+    The noise is drawn at the sampling times of the scenario, unless its plant has another period.
+    With variants the estimators that only figures need run too. Raises what simulate() raises.
+    """
+    start: dict[str, Value] = {**scenario.plant.start, SEED: seed}
+    if SAMPLE_PERIOD in named(str(scenario.plant.fmu)).variables:
+        start = {SAMPLE_PERIOD: scenario.T, **start}
+    plant = replace(scenario.plant, start=start)
+    estimators = {**scenario.estimators, **(scenario.variants if variants else {})}
+    return simulate(plant, estimators, scenario.T, scenario.steps)
+
+
+def indices_by_comparison(scenario: Scenario, recording: Recording) -> dict[str, Indices]:
+    """Computes the performance indices of each comparison in a scenario, by name."""
+    return {
+        comparison.name: indices(
+            recording.t,
+            signal_of(recording, comparison.reference),
+            signal_of(recording, comparison.estimate),
+            signal_of(recording, comparison.relative_to or comparison.reference),
+            scenario.settled,
+        )
+        for comparison in scenario.comparisons
+    }
