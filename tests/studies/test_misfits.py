@@ -2,6 +2,7 @@
 
 import csv
 import math
+import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import product
@@ -13,6 +14,7 @@ from lxml import etree
 from PIL import Image
 
 from command_line import Shell
+from controllers import run
 from plant_runs import QUIET, times
 from sigmahat.experiments.engine import computed_table
 from sigmahat.experiments.records import NAME
@@ -247,3 +249,26 @@ def test_command(rows: list[MisfitRow], shell: Shell, monkeypatch: pytest.Monkey
     values = printed_values["table"]
     assert [value["error"] for value in values] == [row.score.figures["error"] for row in few]
     assert not any(math.isnan(value["claim"]) for value in values)
+
+
+OWN = """
+CONDITIONS = (Condition(Group.NONE, "softer", _plant(spring__k_1=500.0), (SEA_1K,)),)
+"""
+RUN = """
+from pathlib import Path
+from my_misfits import CONDITIONS, JOINTS, Misfits
+from sigmahat.experiments.engine import study
+if __name__ == "__main__":
+    plan = Misfits(CONDITIONS, JOINTS, seeds=[1, 2])
+    print(plan.text(study(plan, Path("my-misfits"))))
+"""
+
+
+@pytest.mark.slow("two runs in processes of their own")
+def test_a_copy_of_the_plan_can_be_changed_and_run(tmp_path: Path) -> None:
+    plan = Path(str(misfits.__file__)).read_text(encoding="utf-8")
+    (tmp_path / "my_misfits.py").write_text(plan + OWN, encoding="utf-8")
+    (tmp_path / "run.py").write_text(RUN, encoding="utf-8")
+    printed = run(sys.executable, "run.py", cwd=tmp_path)
+    assert "softer, SEA1k" in printed and "2 seeds" in printed
+    assert {path.name for path in (tmp_path / "my-misfits").iterdir()} == {*FILES, NAME}

@@ -32,7 +32,14 @@ from sigmahat.experiments.pool import Progress, run_all
 from sigmahat.experiments.scores import SETTLED, Score, score
 from sigmahat.files import toml_file
 from sigmahat.files.output import output_folder
-from sigmahat.files.tables import aligned, numeric_columns, read_csv, title, write_csv
+from sigmahat.files.tables import (
+    aligned,
+    name_and_unit,
+    numeric_columns,
+    read_csv,
+    title,
+    write_csv,
+)
 from sigmahat.fmi.instance import Value
 
 Array = NDArray[np.float64]
@@ -153,7 +160,7 @@ def read(folder: Path) -> Iterator[LogWithTruth]:
             seed=int(line["seed"]),
             sample_period=float(parameters["samplePeriod"]),
             measured={"theta_c": np.zeros(len(t)), **columns},
-            stiffness=numeric_columns(read_csv(folder / TRUTH / f"{name}.csv"))["stiffness"],
+            stiffness=numeric_columns(read_csv(folder / f"{name}.{TRUTH}"))["stiffness"],
             parameters=parameters,
             judged_from=float(line["judged from [s]"]),
         )
@@ -205,14 +212,15 @@ def score_table(log: LogWithTruth, path: Path) -> Score:
 
 
 def _estimates(path: Path) -> dict[str, Array]:
-    if path.suffix == ".csv":
-        return numeric_columns(read_csv(path))
-    from pyarrow import ArrowInvalid, parquet
+    """Reads the columns of a table; a column without any value is nan."""
+    from pyarrow import ArrowInvalid, parquet, types
 
     try:
-        return numeric_columns(parquet.read_table(path))
+        table = read_csv(path) if path.suffix == ".csv" else parquet.read_table(path)
     except ArrowInvalid as error:
         raise ValueError(f"{path}: not readable as Parquet") from error
+    empty = [name_and_unit(field.name)[0] for field in table.schema if types.is_null(field.type)]
+    return {**{name: np.full(len(table), np.nan) for name in empty}, **numeric_columns(table)}
 
 
 def table(scores: Mapping[str, Score]) -> str:
