@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any
 
@@ -12,9 +12,9 @@ import numpy as np
 from rivals.methods import METHODS, Method
 from rivals.records import JointLog
 from rivals.simulation import make
-from sigmahat.experiments.engine import Rows
 from sigmahat.experiments.job import Job, Outcome
 from sigmahat.files.tables import write_csv
+from sigmahat.show.panel import Rows
 
 SCORES = ("error", "width", "coverage", "interval_score", "confident", "wrong")
 """Numbers of a score in the results [%]."""
@@ -61,7 +61,7 @@ class Rivals:
 
     name = "rivals"
 
-    @property
+    @cached_property
     def jobs(self) -> list[Job]:
         return [
             Job(

@@ -50,7 +50,7 @@ class JointLog:
 
 
 @dataclass(frozen=True)
-class Estimate:
+class RivalEstimate:
     """The estimate of a method for a log; NaN at samples without an estimate."""
 
     stiffness: Array  # at every sample [N.m/rad]

@@ -9,12 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sigmahat.experiments.engine import Rows, all_outcomes, computed_table, study
+from sigmahat.experiments.engine import all_outcomes, computed_table, study
 from sigmahat.experiments.job import Job, Outcome
 from sigmahat.experiments.metrics import mean_interval
 from sigmahat.experiments.records import NAME, Records
 from sigmahat.files.tables import write_csv
-from sigmahat.show.panel import Curve, Kind, Panel
+from sigmahat.show.panel import Curve, Kind, Panel, Rows
 
 DONE: list[tuple[float, int]] = []
 """Runs of this process: entry and seed."""

@@ -27,7 +27,7 @@ def _run(
     """
     from sigmahat.experiments.engine import recorded_table, write_files
 
-    common.need_fmus(*sorted({fmu for job in plan.jobs for fmu in job.fmus}))
+    _need_fmus(plan)
     with common.errors_in_one_line(out):
         with common.progress("Running", len(plan.jobs)) as bar:
             table = recorded_table(plan, out, processes, scheduler, bar.update)
@@ -35,6 +35,10 @@ def _run(
             write_files(plan, table, out, bar.update)
     written = f"{files} are in {out.resolve()}"
     common.answer(f"{plan.text(table)}\n\n{written}", plan.values(table))
+
+
+def _need_fmus(plan: Plan[Any]) -> None:
+    common.need_fmus(*sorted({fmu for job in plan.jobs for fmu in job.fmus}))
 
 
 def _names(_: click.Context, __: click.Parameter, begin: str) -> list[str]:
@@ -150,8 +154,7 @@ def sweep(
 
     with common.errors_in_one_line(out):
         plan = Sweep(read_grid(scenario, seeds, modality, settings))
-        fmus = {fmu for job in plan.jobs for fmu in job.fmus}
-        common.need_fmus(*sorted(fmus))
+        _need_fmus(plan)
         check(plan.grid)
     files = "Table (Parquet), summary (CSV) and figures (PNG, SVG)"
     _run(plan, out, files, scheduler=scheduler)

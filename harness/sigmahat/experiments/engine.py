@@ -18,10 +18,9 @@ from sigmahat.experiments.job import Job, Outcome
 from sigmahat.experiments.pool import Progress, WorkerError, WorkersLostError, spread
 from sigmahat.experiments.records import NAME, Records
 from sigmahat.files.output import created_folder, output_folder
-from sigmahat.show.panel import Panel
+from sigmahat.show.panel import Rows
 
 Table = TypeVar("Table")
-Rows = Sequence[Sequence[Panel]]  # panels of a figure, from the top down
 
 
 class Plan(Protocol[Table]):

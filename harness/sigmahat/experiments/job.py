@@ -12,7 +12,7 @@ from typing import Any
 from sigmahat.fmi.installed import fmu as installed_fmu
 from sigmahat.fmi.master import Recording
 
-Row = Mapping[str, float]
+Numbers = Mapping[str, float]
 """Numbers by name."""
 
 
@@ -20,7 +20,7 @@ Row = Mapping[str, float]
 class Outcome:
     """What one run gives."""
 
-    rows: Mapping[str, Row]
+    rows: Mapping[str, Numbers]
     """Numbers, by what they are about: a comparison of a scenario, or a method."""
     failures: Mapping[str, str] = field(default_factory=dict)
     """Reasons why a row is missing, by what it would be about."""
@@ -37,7 +37,7 @@ class Outcome:
 class Job:
     """One run of a plan, an entry with a seed, as data for another process or machine."""
 
-    run: "partial[Outcome]"
+    run: partial[Outcome]
     """A function that other processes can import, with its arguments."""
     fmus: tuple[str, ...]
     """Names of the FMUs that determine the result."""

@@ -7,6 +7,7 @@ from pathlib import Path
 from bokeh.embed import components
 from bokeh.resources import Resources
 
+from sigmahat.experiments.records import NAME as RECORDS
 from sigmahat.files.templates import environment
 from sigmahat.report.contents import Contents, TextTable, of_file
 from sigmahat.report.from_log import from_joints, from_log
@@ -90,7 +91,7 @@ def report(folder: Path) -> str:
     for name, contents in kinds.items():
         if (folder / name).is_file():
             return _page(contents(folder))
-    if (folder / "runs.sqlite").is_file():
+    if (folder / RECORDS).is_file() and not any(folder.glob("*.csv")):
         raise ValueError(f"{folder}: incomplete sweep; run the command of the sweep again")
     raise ValueError(
         f"{folder}: expected results of `sigmahat reproduce`, `estimate` or `sweep` "

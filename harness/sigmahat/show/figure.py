@@ -11,7 +11,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from PIL import Image
 
-from sigmahat.show.panel import Curve, Kind, Panel
+from sigmahat.show.panel import Curve, Kind, Panel, Rows
 
 _LETTERS, _HANDLE = 110, 7
 """Letters of a legend in the width of a figure, and letters that a line and its gaps need."""
@@ -22,7 +22,7 @@ def stacked(panels: Sequence[Panel]) -> Figure:
     return in_rows([[panel] for panel in panels])
 
 
-def in_rows(rows: Sequence[Sequence[Panel]]) -> Figure:
+def in_rows(rows: Rows) -> Figure:
     """Draws rows of panels from the top down; the panels of a row share its width."""
     figure = Figure(figsize=(7.2, 0.8 + 2.8 * len(rows)), layout="constrained")
     grid = figure.add_gridspec(len(rows), 1)

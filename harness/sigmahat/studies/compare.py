@@ -5,12 +5,11 @@ To compare the methods on other joints, copy this file and change JOINTS.
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 from pathlib import Path
 
 import numpy as np
 
-from sigmahat.experiments.engine import Rows
 from sigmahat.experiments.job import Job, Outcome
 from sigmahat.experiments.metrics import INDICES, mean_interval
 from sigmahat.experiments.scenario import (
@@ -24,6 +23,7 @@ from sigmahat.experiments.simulation import indices_by_comparison, run
 from sigmahat.fmi.instance import Value
 from sigmahat.fmi.master import EstimatorFmu, Recording
 from sigmahat.paper.scenarios import SCENARIOS, awas
+from sigmahat.show.panel import Rows
 from sigmahat.studies import compare_results
 from sigmahat.studies.compare_joint import (
     CALIBRATED,
@@ -174,7 +174,7 @@ class MethodComparison:
 
     name = "compare"
 
-    @property
+    @cached_property
     def jobs(self) -> list[Job]:
         return [
             Job(

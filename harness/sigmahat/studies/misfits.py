@@ -9,7 +9,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 from pathlib import Path
 
 import numpy as np
@@ -17,12 +17,12 @@ import numpy as np
 from sigmahat.estimator.estimator import Estimator
 from sigmahat.experiments import benchmark
 from sigmahat.experiments.benchmark import LogWithTruth
-from sigmahat.experiments.engine import Rows
 from sigmahat.experiments.job import Job, Outcome
 from sigmahat.experiments.pool import Progress
 from sigmahat.experiments.scenario import Sine, Sines
 from sigmahat.experiments.scores import SETTLED, Score
 from sigmahat.fmi.instance import Value
+from sigmahat.show.panel import Rows
 from sigmahat.studies import misfit_results
 from sigmahat.studies.misfit_experiment import (
     AWAS,
@@ -384,7 +384,7 @@ class Misfits:
 
     name = "compare"
 
-    @property
+    @cached_property
     def jobs(self) -> list[Job]:
         return [
             Job(

@@ -2,15 +2,15 @@
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
-from functools import partial
+from functools import cached_property, partial
 from pathlib import Path
 
-from sigmahat.experiments.engine import Rows
 from sigmahat.experiments.job import Job, Outcome
 from sigmahat.experiments.metrics import Indices
 from sigmahat.experiments.scenario import Scenario
 from sigmahat.experiments.simulation import indices_by_comparison, run
 from sigmahat.paper.figures import FIGURES
+from sigmahat.show.panel import Rows
 from sigmahat.studies import reproduce_results
 from sigmahat.studies.reproduce_results import Reproduced
 
@@ -37,7 +37,7 @@ class Reproduction:
 
     name = "reproduce"
 
-    @property
+    @cached_property
     def jobs(self) -> list[Job]:
         return [
             Job(

@@ -2,15 +2,15 @@
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 from pathlib import Path
 
-from sigmahat.experiments.engine import Rows
 from sigmahat.experiments.job import Job, Outcome
 from sigmahat.experiments.simulation import indices_by_comparison
 from sigmahat.experiments.simulation import run as run_scenario
 from sigmahat.fmi.instance import FmuError, Slave, installed
 from sigmahat.paper.scenarios import scenario
+from sigmahat.show.panel import Rows
 from sigmahat.studies import sweep_summary
 from sigmahat.studies.sweep_grid import Grid, Run
 from sigmahat.studies.sweep_panels import against_parameters, distributions
@@ -55,7 +55,7 @@ class Sweep:
 
     name = "sweep"
 
-    @property
+    @cached_property
     def jobs(self) -> list[Job]:
         chosen = {name: scenario(name) for name in self.grid.scenarios}
         return [
