@@ -84,8 +84,8 @@ def values(rows: Sequence[MisfitRow]) -> dict[str, Any]:
 def panels(rows: Sequence[MisfitRow]) -> list[list[Panel]]:
     """RMS error against RMS of sigma_std by joint: a point for each row, a colour for each group.
 
-    A row above the line of equal error and claim is less sure than it says; rows in the corner
-    behind the dotted line are dangerous.
+    A row above the line of equal error and claim claims too much; rows in the corner behind the
+    dotted line are dangerous.
     """
     points = [_figures(row)[name] for row in rows for name in ("claim", "error")]
     positive = [value for value in points if value > 0]
@@ -102,10 +102,9 @@ def _panel(joint: str, rows: Sequence[MisfitRow], limits: tuple[float, float]) -
     low, high = limits
     ends = np.array(limits)
     corner = np.array([low, claim, claim]), np.array([error, error, high])
-    words = f"dangerous: over {error:g} % off, claim under {claim:g} %"
     curves = [
         Curve("error = claim", _GREY, ends, ends, width=0.8),
-        Curve(words, _GREY, *corner, dash=(1.0, 1.5)),
+        Curve("dangerous", _GREY, *corner, dash=(1.0, 1.5)),
     ]
     for group in Group:
         of_group = [_figures(row) for row in rows if row.condition.group is group]
@@ -121,7 +120,7 @@ def _panel(joint: str, rows: Sequence[MisfitRow], limits: tuple[float, float]) -
         x_log=True,
         y_log=True,
         linked=False,
-        caption=joint,
+        caption=f"{joint}; dangerous: over {error:g} % off, claim under {claim:g} %",
         y_range=limits,
     )
 
