@@ -41,6 +41,12 @@ def _need_fmus(plan: Plan[Any]) -> None:
     common.need_fmus(*sorted({fmu for job in plan.jobs for fmu in job.fmus}))
 
 
+def _need_intervals(seeds: int) -> None:
+    """Imports scipy, which intervals need: a missing package is reported before the runs."""
+    if seeds > 1:
+        import_module("scipy")
+
+
 def _names(_: click.Context, __: click.Parameter, begin: str) -> list[str]:
     from sigmahat.paper.scenarios import SCENARIOS
 
@@ -61,8 +67,7 @@ def reproduce(scenario: str, seeds: int, out: Path) -> None:
     with common.errors_in_one_line(out):
         chosen = named(scenario)
     common.need_fmus(*chosen.fmus)
-    if seeds > 1:
-        import_module("scipy")  # intervals need scipy: report a missing package before the runs
+    _need_intervals(seeds)
     from sigmahat.studies.reproduce import Reproduction
 
     _run(Reproduction(chosen, range(1, seeds + 1)), out, "Figures (PNG, SVG) and CSV files")
@@ -95,6 +100,7 @@ def compare(misfits: bool, seeds: int, jobs: int | None, out: Path) -> None:
     else:
         from sigmahat.studies.compare import JOINTS, MethodComparison
 
+        _need_intervals(seeds)
         plan = MethodComparison(JOINTS, numbers)
     _run(plan, out, "Figure (PNG, SVG) and CSV file", processes=jobs)
 

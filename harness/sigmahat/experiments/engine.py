@@ -163,6 +163,7 @@ def execute(job: Job, known_as: str) -> Outcome:
     """Does a job that has this identity. Raises WorkerError if FMUs or plan here are different."""
     if job.identity != known_as:
         raise WorkerError(
-            "the FMUs or plans of a worker differ from those here; install the same sigmahat on both"
+            "the FMUs or the plan of a worker differ from those here; "
+            "install the same sigmahat on both"
         )
     return job.run()
