@@ -17,7 +17,16 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from rivals.joint import Drive, Friction, Instruments, Joint, Link, Motor, Spring, Tendons
+from rivals.joint import (
+    DrawnJoint,
+    DrawnSpring,
+    DriveCommand,
+    Friction,
+    Instruments,
+    Link,
+    Motor,
+    Tendons,
+)
 from rivals.records import STD_B, STD_D, STD_GAIN, Array
 
 Range = tuple[float, float]
@@ -100,7 +109,7 @@ SPRING_STANDS = 1.5  # largest spring torque divided by the peak torque of the m
 LARGEST_PHI = 0.2  # [rad]
 
 
-def drawn(kind: str, seed: int) -> Joint:
+def drawn(kind: str, seed: int) -> DrawnJoint:
     """Draws a joint of one of KINDS; each kind has its own random numbers."""
     draw = (_series_elastic, _variable_stiffness, _arm)[KINDS.index(kind)]
     return draw(np.random.default_rng([seed, KINDS.index(kind), 0]))
@@ -168,10 +177,10 @@ def _motor(rng: Rng, load: float, holds: float = 0.0) -> Motor:
     return _until(draw, good)
 
 
-def _spring(rng: Rng, stiffness: float, load: float, torque: float) -> Spring:
+def _spring(rng: Rng, stiffness: float, load: float, torque: float) -> DrawnSpring:
     """Draws a spring that is linear, or hardens at the deformation by the given torque [N.m]."""
     more = _even(rng, HARDENING) * int(rng.integers(2))
-    return Spring(
+    return DrawnSpring(
         stiffness, stiffness * more / 3 / (torque / stiffness) ** 2, _damping(rng, stiffness, load)
     )
 
@@ -258,7 +267,9 @@ def _gains(motor: Motor, load: float, bandwidth: float) -> tuple[float, float]:
     return kd * omega / 1.4, kd
 
 
-def _torque_drive(rng: Rng, motor: Motor, load: float, stiffness: float) -> tuple[Drive, float]:
+def _torque_drive(
+    rng: Rng, motor: Motor, load: float, stiffness: float
+) -> tuple[DriveCommand, float]:
     """Draws a multisine of torque, and computes the deformation of a linear joint [rad]."""
     own_frequency = math.sqrt(stiffness / load) / 2 / math.pi
     sines = _multisine(rng, max(_even(rng, HIGHEST) * own_frequency, 3 * LOWEST))
@@ -273,12 +284,14 @@ def _torque_drive(rng: Rng, motor: Motor, load: float, stiffness: float) -> tupl
     effort = _even(rng, EFFORT) * motor.peak / _peak(sines.values())
     scale = min(effort, LARGEST_SPEED / speed, most / phi)
     kp, kd = _gains(motor, load, CENTRING)
-    return Drive(scale * sines.values(), np.zeros_like(TIMES), kp, kd, motor.peak), scale * phi
+    return DriveCommand(
+        scale * sines.values(), np.zeros_like(TIMES), kp, kd, motor.peak
+    ), scale * phi
 
 
 def _position_drive(
     rng: Rng, motor: Motor, load: float, stiffness: float, centre: float = 0.0
-) -> tuple[Drive, float]:
+) -> tuple[DriveCommand, float]:
     """Draws position control along a multisine, and computes the deformation by inertia [rad]."""
     bandwidth = _even(rng, BANDWIDTH)
     sines = _multisine(rng, bandwidth)
@@ -292,7 +305,7 @@ def _position_drive(
         LARGEST_PHI * stiffness / load / acceleration,
     )
     kp, kd = _gains(motor, load, bandwidth)
-    drive = Drive(np.zeros_like(TIMES), centre + scale * sines.values(), kp, kd, motor.peak)
+    drive = DriveCommand(np.zeros_like(TIMES), centre + scale * sines.values(), kp, kd, motor.peak)
     return drive, scale * load * acceleration / stiffness
 
 
@@ -317,13 +330,13 @@ def _single(rng: Rng, load: float, stiffness: float) -> dict[str, Any]:
     }
 
 
-def _series_elastic(rng: Rng) -> Joint:
+def _series_elastic(rng: Rng) -> DrawnJoint:
     """Draws a series elastic joint with a linear or hardening spring."""
     load = _log(rng, LOG_LINK)
     stiffness = _stiffness(rng, LOG_STIFFNESS, load)
     parts = _single(rng, load, stiffness)
     (motor,) = parts["motors"]
-    return Joint(springs=(_spring(rng, stiffness, load, motor.gear * motor.peak),), **parts)
+    return DrawnJoint(springs=(_spring(rng, stiffness, load, motor.gear * motor.peak),), **parts)
 
 
 def _tendons(rng: Rng, stiffness: float, load: float) -> Tendons:
@@ -344,7 +357,7 @@ def _tendons(rng: Rng, stiffness: float, load: float) -> Tendons:
     )
 
 
-def _variable_stiffness(rng: Rng) -> Joint:
+def _variable_stiffness(rng: Rng) -> DrawnJoint:
     """Draws a joint with two tendons, whose stiffness motor turns during the simulation."""
     load = _log(rng, LOG_LINK)
     stiffness = _stiffness(rng, LOG_STIFFNESS_VARIABLE, load)
@@ -352,7 +365,7 @@ def _variable_stiffness(rng: Rng) -> Joint:
     parts = _single(rng, load, stiffness)
     knots = np.arange(0, DURATION + KNOTS, KNOTS)
     theta_c = np.interp(TIMES, knots, rng.uniform(0, tendons.range_theta_c, len(knots)))
-    return Joint(tendons=tendons, theta_c=theta_c, **parts)
+    return DrawnJoint(tendons=tendons, theta_c=theta_c, **parts)
 
 
 def _links(rng: Rng) -> tuple[Link, Link]:
@@ -382,7 +395,7 @@ def _gravity_torques(links: tuple[Link, Link], q_1: Array, q_2: Array) -> tuple[
     return at_shoulder + elbow, elbow
 
 
-def _arm(rng: Rng) -> Joint:
+def _arm(rng: Rng) -> DrawnJoint:
     """Draws an arm with two flexible joints, one of which is in the log. The reference position of
     the tip is below the floor for some of the time, but not at the beginning."""
     links = _links(rng)
@@ -408,7 +421,7 @@ def _arm(rng: Rng) -> Joint:
         drives.append(replace(drive, feed_forward=known))
         instruments.append(_instruments(rng, motor.peak, phi + float(np.ptp(weight)) / 2 / k))
         springs.append(_spring(rng, k, load, motor.gear * motor.peak))
-    return Joint(
+    return DrawnJoint(
         motors=tuple(motors),
         springs=tuple(springs),
         links=links,

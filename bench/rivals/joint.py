@@ -70,7 +70,7 @@ class Motor:
 
 
 @dataclass(frozen=True)
-class Spring:
+class DrawnSpring:
     """Torque on the motor: stiffness phi + k_3 phi^3 + damping phi'."""
 
     stiffness: float  # [N.m/rad]
@@ -126,7 +126,7 @@ class Link:
 
 
 @dataclass(frozen=True)
-class Drive:
+class DriveCommand:
     """Command of a motor: u = feed_forward + kp (reference - theta) - kd theta', within +-peak.
 
     theta is the encoder position, theta' the difference of theta after a first-order low pass.
@@ -153,7 +153,7 @@ class Instruments:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Joint:
+class DrawnJoint:
     """Motors, links, drives and instruments of a joint; an arm has two motors and links.
 
     An arm has two links in a vertical plane, a motor and a spring in each joint, and a floor.
@@ -161,12 +161,12 @@ class Joint:
 
     motors: tuple[Motor, ...]
     links: tuple[Link, ...]
-    drives: tuple[Drive, ...]
+    drives: tuple[DriveCommand, ...]
     instruments: tuple[Instruments, ...]
     sheet: Mapping[str, float]
     """Ratios of the data sheet values to the true values, by start value of the estimator."""
     gravity: float  # 0 where the axis is vertical [m/s2]
-    springs: tuple[Spring, ...] = ()  # one a motor, or none beside tendons
+    springs: tuple[DrawnSpring, ...] = ()  # one a motor, or none beside tendons
     tendons: Tendons | None = None
     theta_c: Array | None = None  # where the stiffness motor shall be at every sample [rad]
     floor: float | None = None  # of an arm, height against the first axis [m]

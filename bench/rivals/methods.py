@@ -12,7 +12,7 @@ import numpy as np
 from scipy import signal
 
 import sigmahat
-from rivals.records import STD_B, STD_D, STD_GAIN, Array, Estimate, JointLog
+from rivals.records import STD_B, STD_D, STD_GAIN, Array, JointLog, RivalEstimate
 from sigmahat.fmi.model import Value
 
 CONFIDENT = 0.1
@@ -50,7 +50,7 @@ def _spring(log: JointLog, phi: Array) -> tuple[Array, Array]:
     return np.column_stack(torques), np.column_stack(slopes)
 
 
-def _filtered_regression(log: JointLog) -> Estimate:
+def _filtered_regression(log: JointLog) -> RivalEstimate:
     """Estimates on line: the estimate at each sample depends only on samples up to then.
 
     Parameters are as docs/filtered-regression.md advises: ranges, priors and noise are from the
@@ -60,7 +60,7 @@ def _filtered_regression(log: JointLog) -> Estimate:
     return _on_line(log, {"method": "FilteredRegression", "range.setPoint": _travel(log), **known})
 
 
-def _paper2011(log: JointLog) -> Estimate:
+def _paper2011(log: JointLog) -> RivalEstimate:
     """Estimates on line by Paper2011, without standard deviation or confidence.
 
     F. Flacco, A. De Luca, I. Sardellitti, N. G. Tsagarakis, "Robust estimation of variable
@@ -74,10 +74,10 @@ def _paper2011(log: JointLog) -> Estimate:
     c = SAMPLE / (P_0 * log.known["range.phi"] ** 2)
     found = _on_line(log, {"method": "Paper2011", "rls.P_0": P_0, "rls.c": c})
     nothing = np.full(len(log.theta), np.nan)
-    return Estimate(found.stiffness, nothing, np.zeros(len(nothing), bool), found.seconds)
+    return RivalEstimate(found.stiffness, nothing, np.zeros(len(nothing), bool), found.seconds)
 
 
-def _on_line(log: JointLog, start: dict[str, Value]) -> Estimate:
+def _on_line(log: JointLog, start: dict[str, Value]) -> RivalEstimate:
     """Runs the estimator of this package; `start` has the parameters of the method."""
     of_log = {"samplePeriod": log.sample_period, "rls.n": N, "rls.m": _m(log)}
     set_point = {"setPoint.offset": 0.0, "setPoint.scale": 1.0}
@@ -87,10 +87,10 @@ def _on_line(log: JointLog, start: dict[str, Value]) -> Estimate:
     begin = time.perf_counter()
     found = estimator.run(log.theta, log.q, log.tau, log.theta_c)
     seconds = time.perf_counter() - begin
-    return Estimate(found["sigma"], found["sigma_std"], found["confident"], seconds)
+    return RivalEstimate(found["sigma"], found["sigma_std"], found["confident"], seconds)
 
 
-def _least_squares(log: JointLog) -> Estimate:
+def _least_squares(log: JointLog) -> RivalEstimate:
     """Ordinary least squares of the motor equation off line, IDIM-LS: the estimate of the whole
     log, the same at every sample but for the deformation.
 
@@ -119,7 +119,7 @@ def _least_squares(log: JointLog) -> Estimate:
     variance = np.sum((slope @ covariance[SPRING:, SPRING:]) * slope, axis=1)
     std = np.hypot(np.sqrt(np.maximum(variance, 0.0)), STD_GAIN * stiffness)
     confident = np.isfinite(stiffness) & np.isfinite(std) & (std < CONFIDENT * stiffness)
-    return Estimate(stiffness, std, confident, time.perf_counter() - begin)
+    return RivalEstimate(stiffness, std, confident, time.perf_counter() - begin)
 
 
 def _regression(log: JointLog) -> tuple[Array, Array, Array]:
@@ -173,7 +173,8 @@ def _solve(X: Array, y: Array, known: Mapping[str, float]) -> tuple[Array, Array
     return beta / scale, np.linalg.inv(precision) / np.outer(scale, scale)
 
 
-METHODS: dict[str, Callable[[JointLog], Estimate]] = {
+Method = Callable[[JointLog], RivalEstimate]
+METHODS: dict[str, Method] = {
     "FilteredRegression": _filtered_regression,
     "Paper2011": _paper2011,
     "least_squares": _least_squares,

@@ -1,26 +1,25 @@
 """Runs all methods on all joints, writes results and tables: python -m rivals.run --help.
 
-Needs the folders bench/ and harness/ on the path, as in cmake --workflow --preset rivals.
+After an interruption, the same command does the missing joints. Needs the folders bench/ and
+harness/ on the path, as in cmake --workflow --preset rivals.
 """
 
 import argparse
 import sys
-from collections.abc import Sequence
-from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from pathlib import Path
 
 from rivals.draw import KINDS
 from rivals.methods import METHODS
-from rivals.score import RESULT, Result, judge, page
+from rivals.plan import Rivals
 from rivals.simulation import make
-from sigmahat.files.tables import write_csv
+from sigmahat.experiments import benchmark
+from sigmahat.experiments.engine import study
 
 
-def run_joint(methods: Sequence[str], joint: tuple[str, int]) -> list[Result]:
-    """Computes the results of all methods on the joint of the given kind and seed."""
-    log = make(*joint)
-    return [judge(name, METHODS[name], log) for name in methods]
+def made(kind: str, seed: int) -> benchmark.LogWithTruth:
+    """Simulates a joint, and returns its log for a benchmark."""
+    return make(kind, seed).with_truth
 
 
 def main() -> None:
@@ -37,20 +36,27 @@ def main() -> None:
     parser.add_argument("--methods", nargs="+", choices=METHODS, default=list(METHODS))
     parser.add_argument("--jobs", type=int, default=1, help="processes; default: %(default)s")
     parser.add_argument("--out", type=Path, required=True, help="folder for results and tables")
+    parser.add_argument(
+        "--logs",
+        action="store_true",
+        help="write the logs with their truth into the folder, as a benchmark, and run no method",
+    )
     arguments = parser.parse_args()
     first, last = arguments.seeds
-    joints = [(kind, seed) for kind in arguments.kinds for seed in range(first, last + 1)]
-    results: list[Result] = []
-    with ProcessPoolExecutor(arguments.jobs) as pool:
-        for found in pool.map(partial(run_joint, arguments.methods), joints):
-            results += found
-            print(found[0]["kind"], found[0]["seed"], file=sys.stderr, flush=True)
-    text = page(results)
-    arguments.out.mkdir(parents=True, exist_ok=True)
-    rows = ([result.get(name) for name in RESULT] for result in results)
-    write_csv(arguments.out / "rivals.csv", RESULT, rows)
-    (arguments.out / "rivals.md").write_text(text, encoding="utf-8")
-    print(text)
+    seeds = range(first, last + 1)
+    if arguments.logs:
+        makers = [partial(made, kind, seed) for kind in arguments.kinds for seed in seeds]
+        benchmark.write(makers, arguments.out, arguments.jobs)
+        return
+    plan = Rivals(arguments.kinds, seeds, arguments.methods)
+    done = 0
+
+    def show(joints: int) -> None:
+        nonlocal done
+        done += joints
+        print(f"{done} of {len(plan.jobs)} joints", file=sys.stderr, flush=True)
+
+    print(plan.text(study(plan, arguments.out, arguments.jobs, progress=show)))
 
 
 if __name__ == "__main__":

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from rivals.draw import KINDS, SAMPLE_PERIOD, TIP, drawn
-from rivals.joint import Drive, Instruments, Joint, Motor
+from rivals.joint import DrawnJoint, DriveCommand, Instruments, Motor
 from rivals.records import Array, JointLog
 from sigmahat.files.templates import environment
 
@@ -47,7 +47,7 @@ def make(kind: str, seed: int) -> JointLog:
     return log(kind, seed, run(joint), joint, noise)
 
 
-def log(kind: str, seed: int, run: Run, joint: Joint, rng: np.random.Generator) -> JointLog:
+def log(kind: str, seed: int, run: Run, joint: DrawnJoint, rng: np.random.Generator) -> JointLog:
     """Creates the log of a simulated joint; `rng` draws the noise."""
     motor, tools = joint.motors[joint.observed], joint.instruments[joint.observed]
     true = {
@@ -83,7 +83,7 @@ def _rounded(angle: Array, counts: int) -> Array:
     return read
 
 
-def run(joint: Joint) -> Run:
+def run(joint: DrawnJoint) -> Run:
     """Runs the drives of a joint to their end."""
     physics, observed = _Physics(joint), joint.observed
     parts = zip(joint.motors, joint.drives, joint.instruments, strict=True)
@@ -123,7 +123,7 @@ class _Axis:
     The torque follows its command late: after a dead time, with a lag of the first order.
     """
 
-    def __init__(self, motor: Motor, drive: Drive, instruments: Instruments) -> None:
+    def __init__(self, motor: Motor, drive: DriveCommand, instruments: Instruments) -> None:
         at_command, at_log = instruments.delay, 0.0
         if not instruments.commanded:
             at_command, at_log = INNER_DELAY, instruments.delay
@@ -157,7 +157,7 @@ class _Axis:
 class _Physics:
     """A joint in MuJoCo."""
 
-    def __init__(self, joint: Joint) -> None:
+    def __init__(self, joint: DrawnJoint) -> None:
         import mujoco  # imported here, because drawing a joint needs no MuJoCo
 
         self._engine = mujoco
@@ -223,7 +223,7 @@ class _Physics:
         return (torque[0] - torque[1]) / (2 * DIFFERENCE)
 
 
-def _mjcf(joint: Joint) -> str:
+def _mjcf(joint: DrawnJoint) -> str:
     """Builds the MuJoCo model, with an actuator for each motor and for the slider of tendons."""
     values: dict[str, float] = {}
     if tendons := joint.tendons:

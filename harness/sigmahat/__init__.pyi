@@ -4,7 +4,6 @@ from .checks.check import check as check
 from .checks.findings import Checked as Checked
 from .checks.findings import Finding as Finding
 from .estimator.estimator import Estimator as Estimator
-from .experiments.engine import run as run
 from .experiments.metrics import Indices as Indices
 from .experiments.metrics import indices as indices
 from .experiments.metrics import mean_error as mean_error
@@ -14,6 +13,7 @@ from .experiments.scenario import Comparison as Comparison
 from .experiments.scenario import Scenario as Scenario
 from .experiments.scenario import Sine as Sine
 from .experiments.scenario import Sines as Sines
+from .experiments.simulation import run as run
 from .fmi.installed import fmu as fmu
 from .fmi.master import EstimatorFmu as EstimatorFmu
 from .fmi.master import Plant as Plant

@@ -59,7 +59,7 @@ def test_one_line_says_what_to_install(
 
 
 def test_what_sigmahat_does_not_require_is_a_fault_that_shows(tmp_path: Path) -> None:
-    done = run_without("sigmahat.paper.reproduction", "reproduce", cwd=tmp_path)
+    done = run_without("sigmahat.studies.reproduce", "reproduce", cwd=tmp_path)
     assert done.returncode == 1
     assert "ModuleNotFoundError" in done.stderr
 

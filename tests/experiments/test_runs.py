@@ -10,9 +10,8 @@ from functools import partial
 import numpy as np
 import pytest
 
-from sigmahat.experiments.engine import run_all
 from sigmahat.experiments.metrics import indices, mean_error, mean_interval, mse, msrep
-from sigmahat.experiments.pool import WorkersLostError, spread
+from sigmahat.experiments.pool import WorkersLostError, run_all, spread
 
 
 def after(seconds: float, value: int) -> int:

@@ -27,7 +27,7 @@ _SERVER.set_forkserver_preload(
         *("h5py", "scipy.io", "scipy.signal", "matplotlib.figure", "rosbags.highlevel"),
         *("sigmahat.checks.check", "sigmahat.guess.guess", "sigmahat.result.estimate"),
         *("sigmahat.motor.identify", "sigmahat.recording.readers.csv_parquet"),
-        *("sigmahat.recording.readers.matrices", "sigmahat.report.page", "sigmahat.sweep.job"),
+        *("sigmahat.recording.readers.matrices", "sigmahat.report.page", "sigmahat.studies.sweep"),
         *("sigmahat.result.validate", "sigmahat.cli"),
     ]
 )

@@ -2,17 +2,19 @@
 
 from functools import cache
 
-from sigmahat.paper.reproduction import Result, reproduce
+from sigmahat.experiments.engine import computed_table
 from sigmahat.paper.scenarios import scenario
+from sigmahat.studies.reproduce import Reproduction
+from sigmahat.studies.reproduce_results import Reproduced
 
 
 @cache
-def one_seed(name: str) -> Result:
+def one_seed(name: str) -> Reproduced:
     """A scenario with seed 1."""
-    return reproduce(scenario(name), [1])
+    return computed_table(Reproduction(scenario(name), [1]))
 
 
 @cache
-def eight_seeds(name: str) -> Result:
+def eight_seeds(name: str) -> Reproduced:
     """A scenario with seeds 1 to 8."""
-    return reproduce(scenario(name), range(1, 9), processes=2)
+    return computed_table(Reproduction(scenario(name), range(1, 9)), processes=2)

@@ -10,7 +10,7 @@ from contextlib import closing
 from pathlib import Path
 from typing import Any
 
-from sigmahat.sweep.job import NAME
+from sigmahat.experiments.records import NAME
 
 QUICK = "sweep --modality RESIDUAL"
 """One run takes a fraction of a second."""
@@ -34,7 +34,7 @@ def wait_until(is_so: Callable[[], bool], process: subprocess.Popen[Any]) -> Non
 def written(folder: Path) -> int:
     """Number of runs that a sweep has written so far; nobody else may read its database."""
     path = folder / NAME
-    return path.read_bytes().count(b'{"RESIDUAL": [') if path.exists() else 0
+    return path.read_bytes().count(b'{"RESIDUAL": {') if path.exists() else 0
 
 
 def records(folder: Path) -> list[tuple[str, str]]:

@@ -13,7 +13,7 @@ from selenium.webdriver.common.keys import Keys
 
 import sigmahat
 from live_page import LivePage, live_page
-from sigmahat.experiments.engine import run
+from sigmahat.experiments.simulation import run
 from sigmahat.paper.scenarios import scenario
 
 _DRAWN = """

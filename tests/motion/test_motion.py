@@ -71,7 +71,7 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
     with pytest.MonkeyPatch.context() as patch:  # few motions and joints
         patch.setattr(Ranges, "corners", most_friction)
-        spread = "sigmahat.experiments.engine.spread"
+        spread = "sigmahat.experiments.pool.spread"
         patch.setattr(spread, lambda jobs, _: ((i, job()) for i, job in enumerate(jobs)))
         fewer = {"_OF_RESONANCE": (0.3, 0.5), "_EXPONENTS": (1.0,), "_COMPARED": 1, "_PROMISED": 1}
         for name, value in fewer.items():

@@ -7,11 +7,11 @@ import pytest
 
 from recordings import eight_seeds, one_seed
 from sigmahat.experiments.scenario import nominal_awas
-from sigmahat.paper.reproduction import Result
 from sigmahat.paper.scenarios import scenario
+from sigmahat.studies.reproduce_results import Reproduced
 
 
-def worst(result: Result, name: str, index: str) -> float:
+def worst(result: Reproduced, name: str, index: str) -> float:
     return max(abs(float(getattr(each[name], index))) for each in result.indices)
 
 

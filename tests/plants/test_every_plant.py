@@ -12,7 +12,7 @@ from scipy import stats
 from fmi_instance import OK
 from fmi_runs import FMI2, PLANTS
 from plant_runs import QUIET, Array, run_awas, run_plant, times
-from sigmahat.experiments.engine import run
+from sigmahat.experiments.simulation import run
 from sigmahat.paper.scenarios import scenario
 
 

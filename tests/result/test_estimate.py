@@ -20,7 +20,7 @@ from recorded_logs import (
     read_estimate,
     write_log,
 )
-from sigmahat.experiments.engine import run
+from sigmahat.experiments.simulation import run
 from sigmahat.fmi.master import Recording
 from sigmahat.paper.scenarios import SCENARIOS
 from sigmahat.recording.configuration import Port

@@ -11,7 +11,7 @@ import tomlkit
 
 from recorded_logs import write_log
 from rivals.draw import SAMPLE_PERIOD
-from rivals.joint import Drive, Friction, Instruments, Joint, Link, Motor, Spring
+from rivals.joint import DrawnJoint, DrawnSpring, DriveCommand, Friction, Instruments, Link, Motor
 from rivals.records import Array
 from rivals.simulation import run
 from sigmahat.cli import main
@@ -21,7 +21,7 @@ COUNTS = (4096, 262144)  # a turn of the motor on its axis, of the link
 NOISE = 0.003  # of the torque [N.m]
 
 
-def drawn(seed: int) -> Joint:
+def drawn(seed: int) -> DrawnJoint:
     """A joint with Coulomb and viscous friction, whose spring is linear or hardens."""
     rng = np.random.default_rng(seed)
     k_1 = float(np.exp(rng.uniform(np.log(100), np.log(3000))))
@@ -31,9 +31,9 @@ def drawn(seed: int) -> Joint:
     inertia, viscous, coulomb = (rng.uniform(*each) for each in ((0.3, 2), (1, 10), (0.2, 2)))
     dry, length = Friction(coulomb / GEAR), rng.uniform(0.4, 0.6)
     counts = round(GEAR * COUNTS[0])
-    return Joint(
+    return DrawnJoint(
         motors=(Motor(GEAR, inertia / GEAR**2, viscous / GEAR**2, np.inf, dry, 0.02),),
-        springs=(Spring(k_1, k_3, damping),),
+        springs=(DrawnSpring(k_1, k_3, damping),),
         links=(Link(4.0, length, 0.75 * length, 0.1),),
         gravity=9.81,
         drives=(),
@@ -43,13 +43,13 @@ def drawn(seed: int) -> Joint:
 
 
 def motion(
-    joint: Joint, frequencies: tuple[float, ...], seconds: float, seed: int
+    joint: DrawnJoint, frequencies: tuple[float, ...], seconds: float, seed: int
 ) -> dict[str, Array]:
     """The motion of the joint under a position controller."""
     t = SAMPLE_PERIOD * np.arange(round(seconds / SAMPLE_PERIOD), dtype=np.float64)
     waves = zip((0.6, 0.25, 0.1), frequencies, strict=True)
     target = np.sum([a * np.sin(2 * np.pi * f * t) for a, f in waves], axis=0)
-    drive = Drive(np.zeros_like(t), target, 300 / GEAR, 20 / GEAR, np.inf)
+    drive = DriveCommand(np.zeros_like(t), target, 300 / GEAR, 20 / GEAR, np.inf)
     x = run(replace(joint, drives=(drive,)))
     return {
         "time_s": t,
@@ -62,7 +62,7 @@ def motion(
     }
 
 
-def estimated(joint: Joint, folder: Path) -> Path:
+def estimated(joint: DrawnJoint, folder: Path) -> Path:
     """The folder of results of a log of 20 s, by the documented path."""
     log = motion(joint, (0.35, 1.1, 2.3), 20.0, 1)
     write_log({n: log[n] for n in list(log)[:4]}, folder / "knee.csv")

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from rivals.draw import KINDS, SAMPLE_PERIOD, drawn
-from rivals.joint import Friction, Joint, Tendons
+from rivals.joint import DrawnJoint, Friction, Tendons
 from rivals.records import STD_B, STD_D, Array
 from rivals.simulation import Run, log
 from rivals.simulation import run as simulate
@@ -38,7 +38,7 @@ def test_friction_is_as_published(
 
 
 @cache
-def ran(kind: str) -> tuple[Joint, Run]:
+def ran(kind: str) -> tuple[DrawnJoint, Run]:
     """A joint, and the first seconds of what its drives do."""
     if find_spec("mujoco") is None:  # too large for every run of the tests
         pytest.skip("MuJoCo is not installed; to install it: cmake --workflow --preset rivals")

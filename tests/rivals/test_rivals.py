@@ -8,8 +8,9 @@ import pytest
 
 from regression_joint import D_THETA, GAMMA, B, HardeningJoint, MisfitJoint, T
 from rivals.methods import METHODS
-from rivals.records import Estimate, JointLog
-from rivals.score import QUANTILE, SCORES, Result, best, judge, page, score
+from rivals.plan import SCORES, Result, Rivals, best, judged, page
+from rivals.records import JointLog, RivalEstimate
+from sigmahat.experiments.scores import QUANTILE
 
 ERRORS = {"FilteredRegression": 0.5, "least_squares": 0.1}
 """Largest root mean square error of the stiffness [%]."""
@@ -22,6 +23,10 @@ KNOWN = {
 
 
 JOINTS = {"series_elastic": MisfitJoint, "variable_stiffness": HardeningJoint}
+
+
+def score(log: JointLog, estimated: RivalEstimate) -> dict[str, float]:
+    return estimated.score(log).figures
 
 
 def ideal(kind: str, tau_coulomb: float = 0.01) -> JointLog:
@@ -55,9 +60,9 @@ def short_log() -> JointLog:
     return JointLog("arm", 1, 0.5, zero, zero, zero, zero, zero, true, KNOWN)
 
 
-def estimate(stiffness: list[float], std: list[float], confident: list[bool]) -> Estimate:
+def estimate(stiffness: list[float], std: list[float], confident: list[bool]) -> RivalEstimate:
     """Estimates for the last four samples; earlier estimates are meaningless."""
-    return Estimate(
+    return RivalEstimate(
         np.array([np.nan] * 4 + stiffness),
         np.array([np.nan] * 4 + std),
         np.array([True] * 4 + confident),
@@ -82,17 +87,18 @@ def test_where_the_spring_is_not_engaged_nothing_is_judged() -> None:
 
 
 def test_a_method_that_fails_or_is_not_finite_has_a_row_with_its_reason() -> None:
-    def raises(log: JointLog) -> Estimate:
+    def raises(log: JointLog) -> RivalEstimate:
         raise ZeroDivisionError("no motion")
 
-    def not_finite(log: JointLog) -> Estimate:
+    def not_finite(log: JointLog) -> RivalEstimate:
         return estimate([110, np.nan, 1, 110], [1.0] * 4, [True] * 4)
 
     for method, words in (
         (raises, "ZeroDivisionError: no motion"),
         (not_finite, "ValueError: not finite at 1 instants"),
     ):
-        result = judge("Paper2011", method, short_log())
+        outcome = judged(short_log(), {"Paper2011": method})
+        (result,) = Rivals(["arm"], [1], ["Paper2011"]).table([outcome])
         assert math.isnan(result.pop("seconds"))
         assert result == {"kind": "arm", "seed": 1, "method": "Paper2011", "remark": words}
 

@@ -109,7 +109,7 @@ def for_each_joint(
     joints = [joint] if joint else joints_of(read_document(config), config)
     if len(joints) == 1:
         return {joints[0]: _of_joint(log, config, joints[0], job, "")}
-    from sigmahat.experiments.engine import run_all
+    from sigmahat.experiments.pool import run_all
 
     jobs = [partial(_of_joint, log, config, joint, job, f"joint {joint}: ") for joint in joints]
     with progress("Joints", len(joints)) as bar:

@@ -1,11 +1,50 @@
 """Commands that simulate: reproduce, compare, scenarios, sweep."""
 
+from __future__ import annotations
+
 from importlib import import_module
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from sigmahat.commands import common
+
+if TYPE_CHECKING:
+    from sigmahat.experiments.engine import Plan
+
+
+def _run(
+    plan: Plan[Any],
+    out: Path,
+    files: str,
+    processes: int | None = None,
+    scheduler: str | None = None,
+) -> None:
+    """Runs a plan, writes its files into a folder and prints its table; files: what is written.
+
+    Raises ClickException if an FMU is not built, and for what is wrong with a value or a file.
+    """
+    from sigmahat.experiments.engine import recorded_table, write_files
+
+    _need_fmus(plan)
+    with common.errors_in_one_line(out):
+        with common.progress("Running", len(plan.jobs)) as bar:
+            table = recorded_table(plan, out, processes, scheduler, bar.update)
+        with common.progress("Drawing", len(plan.figures(table))) as bar:
+            write_files(plan, table, out, bar.update)
+    written = f"{files} are in {out.resolve()}"
+    common.answer(f"{plan.text(table)}\n\n{written}", plan.values(table))
+
+
+def _need_fmus(plan: Plan[Any]) -> None:
+    common.need_fmus(*sorted({fmu for job in plan.jobs for fmu in job.fmus}))
+
+
+def _need_intervals(seeds: int) -> None:
+    """Imports scipy, which intervals need: a missing package is reported before the runs."""
+    if seeds > 1:
+        import_module("scipy")
 
 
 def _names(_: click.Context, __: click.Parameter, begin: str) -> list[str]:
@@ -23,34 +62,15 @@ def _names(_: click.Context, __: click.Parameter, begin: str) -> list[str]:
 @common.answer_options
 def reproduce(scenario: str, seeds: int, out: Path) -> None:
     """Run a scenario; print its table, draw its figures."""
-    from sigmahat.experiments.metrics import MSREP_IN_WORDS
-    from sigmahat.files.output import output_folder
-    from sigmahat.paper.reproduction import as_dict, conditions, reproduce, table, write_results
     from sigmahat.paper.scenarios import scenario as named
 
     with common.errors_in_one_line(out):
         chosen = named(scenario)
     common.need_fmus(*chosen.fmus)
-    if seeds > 1:
-        import_module("scipy")  # intervals need scipy: report a missing package before the runs
-    numbers = range(1, seeds + 1)
-    with common.errors_in_one_line(out), output_folder(out) as folder:
-        with common.progress("Running", seeds if seeds > 1 else chosen.steps) as bar:
-            result = reproduce(chosen, numbers, progress=bar.update)
-        from sigmahat.paper.figures import FIGURES
-        from sigmahat.show.figure import in_rows, save
+    _need_intervals(seeds)
+    from sigmahat.studies.reproduce import Reproduction
 
-        with common.progress("Drawing", len(chosen.figures)) as bar:
-            for title in chosen.figures:
-                save(in_rows, FIGURES[title](result.recording), folder / title)
-                bar.update(1)
-        write_results(result, folder)
-
-    common.answer(
-        f"{chosen.name}: {chosen.description}\n{conditions(result)}\n{MSREP_IN_WORDS}\n\n"
-        f"{table(result)}\n\nFigures (PNG, SVG) and CSV files are in {out.resolve()}",
-        as_dict(result),
-    )
+    _run(Reproduction(chosen, range(1, seeds + 1)), out, "Figures (PNG, SVG) and CSV files")
 
 
 @common.command("compare --seeds 20 --out compare")
@@ -71,72 +91,18 @@ def reproduce(scenario: str, seeds: int, out: Path) -> None:
 @common.answer_options
 def compare(misfits: bool, seeds: int, jobs: int | None, out: Path) -> None:
     """Compare the estimation methods on joints with wrong motor data."""
-    (_misfits if misfits else _methods)(seeds, jobs, out)
+    numbers = range(1, seeds + 1)
+    if misfits:
+        from sigmahat.studies.misfit_experiment import JOINTS as KINDS
+        from sigmahat.studies.misfits import CONDITIONS, Misfits
 
+        plan: Plan[Any] = Misfits(CONDITIONS, KINDS, numbers)
+    else:
+        from sigmahat.studies.compare import JOINTS, MethodComparison
 
-def _methods(seeds: int, jobs: int | None, out: Path) -> None:
-    from sigmahat.compare.conditions import JOINTS, TRUE
-    from sigmahat.compare.job import CALIBRATED, compare
-    from sigmahat.compare.table import as_dicts, table, write
-    from sigmahat.experiments.metrics import MSREP_IN_WORDS
-    from sigmahat.files.output import output_folder
-
-    for joint in JOINTS:
-        common.need_fmus(*joint.scenario.fmus)
-
-    with common.errors_in_one_line(out), output_folder(out) as folder:
-        with common.progress("Running", len(JOINTS) * seeds) as bar:
-            rows = compare(JOINTS, range(1, seeds + 1), jobs, progress=bar.update)
-        from sigmahat.compare.figure import draw
-        from sigmahat.show.figure import save
-
-        save(draw, rows, folder / "compare")
-        write(rows, seeds, folder / "compare.csv")
-
-    common.answer(
-        f"MSREP [%] of both methods. FilteredRegression from {CALIBRATED:g} s on: sigma_std\n"
-        "relative to the true stiffness, and fraction of the time in which the error is below\n"
-        "1.96 sigma_std. Estimated motor data at the end; the true ones are "
-        f"{TRUE['D_theta']:g} N.m.s/rad\nand {TRUE['B']:g} kg.m2. "
-        f"Mean over {_counted(seeds)}. {MSREP_IN_WORDS}.\n\n"
-        f"{table(rows)}\n\n"
-        f"Figure (PNG, SVG) and CSV file are in {out.resolve()}",
-        as_dicts(rows),
-    )
-
-
-def _misfits(seeds: int, jobs: int | None, out: Path) -> None:
-    from sigmahat.compare.misfits.conditions import CONDITIONS
-    from sigmahat.compare.misfits.experiment import JOINTS
-    from sigmahat.compare.misfits.job import ESTIMATOR, SETTLED, compare, pairs
-    from sigmahat.compare.misfits.motion import PLANT
-    from sigmahat.compare.misfits.table import as_dicts, table, write
-    from sigmahat.files.output import output_folder
-
-    common.need_fmus(PLANT, ESTIMATOR)
-    with common.errors_in_one_line(out), output_folder(out) as folder:
-        with common.progress("Running", len(pairs(CONDITIONS, JOINTS)) * seeds) as bar:
-            rows = compare(CONDITIONS, JOINTS, range(1, seeds + 1), jobs, bar.update)
-        from sigmahat.compare.misfits.figure import draw
-        from sigmahat.show.figure import save
-
-        save(draw, rows, folder / "misfits")
-        write(rows, seeds, folder / "misfits.csv")
-
-    common.answer(
-        f"FilteredRegression on a catalogue of joints and misfits. Error, claim (sigma_std): RMS, "
-        f"relative to the true\nstiffness. Coverage: fraction of instants with the truth within "
-        f"1.96 sigma_std. Dangerous: over 10 % off while\nclaiming under 2 %. Wrong: "
-        f"confident and over 20 % off. Instants after {SETTLED:g} s, outside of a dead zone, of\n"
-        f"{_counted(seeds)}.\n\n"
-        f"{table(rows)}\n\n"
-        f"Figure (PNG, SVG) and CSV file are in {out.resolve()}",
-        as_dicts(rows),
-    )
-
-
-def _counted(seeds: int) -> str:
-    return f"{seeds} seed{'s' if seeds > 1 else ''}"
+        _need_intervals(seeds)
+        plan = MethodComparison(JOINTS, numbers)
+    _run(plan, out, "Figure (PNG, SVG) and CSV file", processes=jobs)
 
 
 @common.command("scenarios --json")
@@ -146,10 +112,9 @@ def scenarios() -> None:
     from sigmahat.paper.scenarios import SCENARIOS
 
     width = max(map(len, SCENARIOS)) + 2
-    every = SCENARIOS.values()
     common.answer(
-        "\n".join(f"{each.name:{width}}{each.description}" for each in every),
-        [{"name": each.name, "description": each.description} for each in every],
+        "\n".join(f"{s.name:{width}}{s.description}" for s in SCENARIOS.values()),
+        [{"name": s.name, "description": s.description} for s in SCENARIOS.values()],
     )
 
 
@@ -190,19 +155,12 @@ def sweep(
     After an interruption, the same command does the missing runs; with more seeds, only the runs
     of the new seeds.
     """
-    from sigmahat.paper.scenarios import scenario as named
-    from sigmahat.sweep.job import sweep as run
-    from sigmahat.sweep.plan import read_plan
-    from sigmahat.sweep.summary import as_dicts, conditions, summary
+    from sigmahat.studies.sweep import Sweep, check
+    from sigmahat.studies.sweep_grid import read_grid
 
     with common.errors_in_one_line(out):
-        plan = read_plan(scenario, seeds, modality, settings)
-        for name in plan.scenarios:
-            common.need_fmus(*named(name).fmus)
-        with common.progress("Running", plan.count) as bar:
-            result = run(plan, out, scheduler, progress=bar.update)
-    common.answer(
-        f"{conditions(plan)}\n\n{summary(result)}\n\n"
-        f"Table (Parquet), summary (CSV) and figures (PNG, SVG) are in {out.resolve()}",
-        as_dicts(result),
-    )
+        plan = Sweep(read_grid(scenario, seeds, modality, settings))
+        _need_fmus(plan)
+        check(plan.grid)
+    files = "Table (Parquet), summary (CSV) and figures (PNG, SVG)"
+    _run(plan, out, files, scheduler=scheduler)

@@ -1,1 +1,1 @@
-"""The engine: runs of scenarios over seeds, in parallel, and the evaluation of each run."""
+"""The engine of experiments: runs of plans over seeds, their records, and scores of estimates."""

@@ -7,7 +7,7 @@ import threading
 from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from multiprocessing.connection import wait
 from multiprocessing.resource_tracker import ensure_running
 from typing import TypeVar
@@ -15,6 +15,8 @@ from typing import TypeVar
 from sigmahat.fmi.interrupts import interrupts_wait
 
 Result = TypeVar("Result")
+Progress = Callable[[int], object]
+"""Is called now and then with the number of jobs that are done since the last call."""
 
 
 class WorkerError(RuntimeError):
@@ -30,12 +32,16 @@ def spread(
 ) -> Generator[tuple[int, Result], None, None]:
     """Yields the place of a job and its result, in the order in which the jobs are done.
 
-    jobs       partial objects or functions that other processes can import
+    jobs       partial objects or functions that other processes can import; a single job is done
+               in this process
     processes  largest number of processes, by default one per processor
 
     Raises what a job raises, and WorkersLostError if another program ended a process. Closing
     the generator cancels the jobs that have not begun.
     """
+    if len(jobs) == 1:
+        yield 0, jobs[0]()
+        return
     workers = max(min(len(jobs), processes or os.cpu_count() or 1), 1)
     context = multiprocessing.get_context("spawn")
     executor = ProcessPoolExecutor(workers, mp_context=context, initializer=_end_with_the_parent)
@@ -48,6 +54,24 @@ def spread(
         raise WorkersLostError("another program ended a worker process") from error
     finally:
         executor.shutdown(cancel_futures=True)
+
+
+def run_all(
+    jobs: Sequence[Callable[[], Result]],
+    processes: int | None = None,
+    progress: Progress = lambda done: None,
+) -> list[Result]:
+    """Returns the results of all jobs in their order; the first exception of a job ends all jobs.
+
+    jobs, processes  as for spread(); the number of processes has no effect on the results
+    progress         called with 1 for every job that is done
+    """
+    results: dict[int, Result] = {}
+    with closing(spread(jobs, processes)) as done:
+        for place, result in done:
+            results[place] = result
+            progress(1)
+    return [results[place] for place in range(len(jobs))]
 
 
 @contextmanager

@@ -70,3 +70,21 @@ def aligned(rows: Sequence[Sequence[str]], left: Container[int] = (0,)) -> list[
         )
         for row in rows
     ]
+
+
+def with_headings(lines: Sequence[str], headings: Sequence[str]) -> str:
+    """Joins a head and lines to a text; each group of lines stands below its heading.
+
+    headings  the heading of each line after the head; equal neighbours are one group
+    """
+    text, above = [lines[0]], ""
+    for line, heading in zip(lines[1:], headings, strict=True):
+        if heading != above:
+            text += ["", above := heading]
+        text.append(line)
+    return "\n".join(text)
+
+
+def counted(count: int, noun: str) -> str:
+    """Formats a number of things: 1 seed, 5 seeds."""
+    return f"{count} {noun}{'s' if count > 1 else ''}"

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import tomlkit
 
-from sigmahat.experiments.engine import run_all
+from sigmahat.experiments.pool import run_all
 from sigmahat.motion.joints_of_log import Array, Joint, Limits, Multisine, Ranges
 from sigmahat.motor.identify import identify
 from sigmahat.motor.write import update

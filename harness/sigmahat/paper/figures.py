@@ -12,11 +12,10 @@ from numpy.typing import NDArray
 
 from sigmahat.experiments.scenario import NOMINAL, PLANT, signal_of, source_and_variable
 from sigmahat.fmi.master import Recording
-from sigmahat.show.panel import TRUE, Curve, Kind, Panel
+from sigmahat.show.panel import TRUE, Curve, Kind, Panel, Rows
 from sigmahat.show.style import BLACK, BLUE, GREEN, SKY, VERMILION, plain_axis
 
 Array = NDArray[np.float64]
-Rows = Sequence[Sequence[Panel]]  # panels of a figure, from the top down
 _Part = Callable[[Recording], slice]  # the samples of a recording that a panel shows
 
 _DASHED, _DOTTED = (5.0, 2.0), (1.0, 1.5)

@@ -7,17 +7,18 @@ from pathlib import Path
 from bokeh.embed import components
 from bokeh.resources import Resources
 
+from sigmahat.experiments.records import NAME as RECORDS
 from sigmahat.files.templates import environment
-from sigmahat.paper.reproduction import SEEDS, TABLE, TIME, read_result_files
 from sigmahat.report.contents import Contents, TextTable, of_file
 from sigmahat.report.from_log import from_joints, from_log
 from sigmahat.result.estimate import JOINTS
 from sigmahat.result.log_panels import quantity_panels, reduce, sampling, stiffness_panels
 from sigmahat.show.plots import plots
 from sigmahat.show.style import PAGE
-from sigmahat.sweep.panels import against_parameters, distributions
-from sigmahat.sweep.summary import summary_columns
-from sigmahat.sweep.table import FAILURE, RUN, Role, read, title
+from sigmahat.studies.reproduce_results import SEEDS, TABLE, TIME, read_result_files
+from sigmahat.studies.sweep_panels import against_parameters, distributions
+from sigmahat.studies.sweep_summary import summary_columns
+from sigmahat.studies.sweep_table import FAILURE, RUN, Role, read, title
 
 _MAIN = "RESIDUAL"  # estimator for panels of a single estimator: RESIDUAL needs no torque sensor
 _STIFFNESS = re.compile(r"sigma(_\d)?")
@@ -57,7 +58,7 @@ def from_reproduction(folder: Path) -> Contents:
 def from_sweep(folder: Path) -> Contents:
     """The summary, the distribution of the error, and the error against each parameter.
 
-    Raises ValueError as sigmahat.sweep.table.read() does.
+    Raises ValueError as sigmahat.studies.sweep_table.read() does.
     """
     sweep = read(folder / "sweep.parquet")
     runs = dict(zip(sweep.values(RUN), sweep.values(FAILURE), strict=True))
@@ -90,7 +91,7 @@ def report(folder: Path) -> str:
     for name, contents in kinds.items():
         if (folder / name).is_file():
             return _page(contents(folder))
-    if (folder / "runs.sqlite").is_file():
+    if (folder / RECORDS).is_file() and not any(folder.glob("*.csv")):
         raise ValueError(f"{folder}: incomplete sweep; run the command of the sweep again")
     raise ValueError(
         f"{folder}: expected results of `sigmahat reproduce`, `estimate` or `sweep` "

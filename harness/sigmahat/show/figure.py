@@ -11,7 +11,10 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from PIL import Image
 
-from sigmahat.show.panel import Curve, Kind, Panel
+from sigmahat.show.panel import Curve, Kind, Panel, Rows
+
+_LETTERS, _HANDLE = 110, 7
+"""Letters of a legend in the width of a figure, and letters that a line and its gaps need."""
 
 
 def stacked(panels: Sequence[Panel]) -> Figure:
@@ -19,7 +22,7 @@ def stacked(panels: Sequence[Panel]) -> Figure:
     return in_rows([[panel] for panel in panels])
 
 
-def in_rows(rows: Sequence[Sequence[Panel]]) -> Figure:
+def in_rows(rows: Rows) -> Figure:
     """Draws rows of panels from the top down; the panels of a row share its width."""
     figure = Figure(figsize=(7.2, 0.8 + 2.8 * len(rows)), layout="constrained")
     grid = figure.add_gridspec(len(rows), 1)
@@ -27,11 +30,18 @@ def in_rows(rows: Sequence[Sequence[Panel]]) -> Figure:
         cells = grid[row].subgridspec(1, len(panels))
         for column, panel in enumerate(panels):
             axes = figure.add_subplot(cells[column])
-            draw(axes, panel, columns=5 if len(panels) == 1 else 2)
+            most = 5 if len(panels) == 1 else 2
+            draw(axes, panel, columns=max(1, min(most, _fitting(panel, len(panels)))))
             label_x(axes, panel)
             if len(panels) > 1 and not panel.x_log:
                 axes.locator_params(axis="x", nbins=5)
     return figure
+
+
+def _fitting(panel: Panel, shares: int) -> int:
+    """How many labels of a panel fit side by side into its share of the width of a figure."""
+    longest = max((len(curve.label) for curve in panel.curves), default=0)
+    return int(_LETTERS / shares / (longest + _HANDLE))
 
 
 def draw(axes: Axes, panel: Panel, columns: int = 3) -> None:

@@ -52,3 +52,7 @@ class Panel:
     caption: str = ""  # text below the title
     y_range: tuple[float, float] | None = None
     """Limits of y that are shown at first, for estimates that jump before they converge."""
+
+
+Rows = Sequence[Sequence[Panel]]
+"""The panels of a figure, from the top down; the panels of a row stand side by side."""

@@ -1,1 +1,0 @@
-"""Compares both methods of the estimator on joints with wrong motor data."""

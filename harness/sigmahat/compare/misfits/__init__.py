@@ -1,1 +1,0 @@
-"""FilteredRegression on a catalogue of misfits: effects of real joints that no model has."""

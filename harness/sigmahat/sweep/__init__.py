@@ -1,1 +1,0 @@
-"""Runs of scenarios over seeds and parameters, in parallel."""
