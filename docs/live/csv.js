@@ -1,5 +1,6 @@
 "use strict";
-// A CSV file as columns of numbers. What is wrong with it is said in one line, with the row.
+// A CSV file as columns of numbers. PapaParse splits it into cells; here is what a log must have
+// besides. What is wrong with it is said in one line, with the row of the file.
 
 const MOST_BYTES = 100e6, FEWEST_ROWS = 100, MOST_ROWS = 1e6;
 const FEWEST_COLUMNS = 4;
@@ -14,41 +15,44 @@ function checkSize({ size }) {
 
 class Table {
   constructor(text) {
-    const lines = text.replace(/^\uFEFF/, "").split(/\r\n|\n|\r/);
-    while (lines.length && lines.at(-1).trim() === "") lines.pop();
     if (text.includes("\0")) throw new Error("expected text with separated values, got a binary file");
-    const told = /^sep=([;,\t])$/i.exec(lines[0]?.trimStart())?.[1]; // as Excel writes
-    const isAbove = (line, i) => (i === 0 && told) || line.trim() === "" || line.startsWith("#");
-    let above = lines.findIndex((line, i) => !isAbove(line, i));
+    const excel = /^sep=([;,\t])\s*$/im.exec(text.slice(0, 10)); // as Excel writes above the names
+    const separator = excel?.[1] ?? separatorOf(text);
+    const lines = text.replace(/\r\n?/g, "\n"); // PapaParse expects one kind of end in a file
+    const { data, errors } = Papa.parse(lines, { delimiter: separator, newline: "\n" });
+    const rows = data.map((row) => row.map((cell) => cell.trim()));
+    while (rows.length && isEmpty(rows.at(-1))) rows.pop();
+    let above = rows.findIndex((row, i) => !(i === 0 && excel) && !isEmpty(row) && !isComment(row));
     if (above < 0) throw new Error("expected a CSV file with numbers, the file is empty");
-    this.separator = told ?? [";", "\t", ","].find((each) => lines[above].includes(each)) ?? ",";
-    this.comma = this.separator !== ","; // 1,5 for 1.5
-    this.names = this.#cells(lines[above]);
-    const comment = this.#cells(lines[above - 1]?.startsWith("#") ? lines[above - 1].slice(1) : "");
-    if (comment.length === this.names.length && this.#numbers(lines[above]) === comment.length) {
+    const broken = errors.find(({ row }) => row >= above);
+    if (broken) throw new Error(`row ${broken.row + 1}: ${broken.message}`);
+    this.comma = separator !== ","; // 1,5 for 1.5
+    this.names = rows[above];
+    const comment = namesOfComment(rows[above - 1]);
+    if (comment.length === this.names.length && this.#numbers(rows[above]) === comment.length) {
       this.names = comment; // as numpy.savetxt writes
       above -= 1;
     }
     this.first = above + 2; // row of the file with the first numbers
-    this.lines = lines.slice(above);
-    this.rows = this.lines.length - 1;
+    this.cells = rows.slice(above + 1);
+    this.rows = this.cells.length;
     this.#check();
   }
 
   /** The column of this name. Throws an error that names the first row without a finite number. */
   column(name) {
-    const place = this.names.indexOf(name), values = new Float64Array(this.rows);
-    for (let i = 0; i < this.rows; i += 1) {
+    const place = this.names.indexOf(name);
+    return Float64Array.from(this.cells, (_, i) => {
       const text = this.#row(i)[place];
-      values[i] = this.#number(text);
-      if (!Number.isFinite(values[i])) throw new Error(
+      const value = this.#number(text);
+      if (!Number.isFinite(value)) throw new Error(
         `row ${i + this.first}, column ${name}: expected a finite number, got ${text ? `"${text.slice(0, 40)}"` : "nothing"}`);
-    }
-    return values;
+      return value;
+    });
   }
 
   #row(i) {
-    const cells = this.#cells(this.lines[i + 1]), { length } = this.names;
+    const cells = this.cells[i], { length } = this.names;
     if (cells.length !== length) throw new Error(
       `row ${i + this.first}: expected ${length} cells, one for each name, got ${cells.length}`);
     return cells;
@@ -57,7 +61,7 @@ class Table {
   #check() {
     const { names, rows, first } = this, numeric = names.filter((name) => !Number.isNaN(this.#number(name)));
     if (names.length < FEWEST_COLUMNS) throw new Error(
-      `expected at least ${FEWEST_COLUMNS} columns (time, theta, q, tau), got ${names.length}: "${this.lines[0].slice(0, 60)}"`);
+      `expected at least ${FEWEST_COLUMNS} columns (time, theta, q, tau), got ${names.length}: "${shown(names)}"`);
     if (numeric.length) throw new Error(
       `expected the names of the columns above the numbers, got the number ${numeric[0]}`);
     const twice = names.find((name, i) => names.indexOf(name) !== i);
@@ -65,26 +69,14 @@ class Table {
     if (rows < FEWEST_ROWS || rows > MOST_ROWS) throw new Error(
       `expected ${FEWEST_ROWS} to ${MOST_ROWS / 1e6} million rows below the names, got ${rows}`);
     this.#row(0);
-    const [numbers, below] = [1, 2].map((i) => this.#numbers(this.lines[i]));
+    const [numbers, below] = [0, 1].map((i) => this.#numbers(this.cells[i]));
     if (!numbers && below) throw new Error(`row ${first} has no numbers (units?): delete it`);
     if (numbers < FEWEST_COLUMNS) throw new Error(
-      `expected numbers in at least ${FEWEST_COLUMNS} columns, got "${this.lines[1].slice(0, 60)}" in row ${first}`);
+      `expected numbers in at least ${FEWEST_COLUMNS} columns, got "${shown(this.cells[0])}" in row ${first}`);
   }
 
-  #numbers(line) {
-    return this.#cells(line).filter((cell) => Number.isFinite(this.#number(cell))).length;
-  }
-
-  #cells(line) {
-    if (!line.includes('"')) return line.split(this.separator).map((cell) => cell.trim());
-    const cells = [""];
-    let quoted = false; // a separator inside quotes belongs to the cell
-    for (const part of line.split(/([",;\t])/)) {
-      if (part === '"') quoted = !quoted;
-      else if (part === this.separator && !quoted) cells.push("");
-      else cells[cells.length - 1] += part;
-    }
-    return cells.map((cell) => cell.trim());
+  #numbers(cells) {
+    return cells.filter((cell) => Number.isFinite(this.#number(cell))).length;
   }
 
   #number(text) {
@@ -92,15 +84,27 @@ class Table {
   }
 }
 
-/** Time between samples, of times in s that rise evenly, the first of them in row `first`. A rounded time may be off by half of it. */
-function samplePeriod(times, first) {
-  const T = (times.at(-1) - times[0]) / (times.length - 1);
-  if (!(T > 0)) throw new Error(`time: expected times that rise, got ${times[0]} s first and ${times.at(-1)} s last`);
-  for (let i = 1; i < times.length; i += 1) {
-    const step = times[i] - times[i - 1];
-    if (!(Math.abs(step - T) <= T / 2)) throw new Error(
-      `time: expected steps of about ${Number(T.toPrecision(3))} s as in the mean, got ${Number(step.toPrecision(3))} s `
-      + `in row ${i + first}; the command sigmahat estimate takes logs with gaps`);
-  }
-  return Number(T.toPrecision(9));
+/** The separator in the first line that is neither empty nor a comment. */
+function separatorOf(text) {
+  const line = /^(?!\s*$|#).*$/m.exec(text)?.[0] ?? "";
+  return [";", "\t", ","].find((separator) => line.includes(separator)) ?? ",";
+}
+
+function isEmpty(row) {
+  return row.length === 1 && row[0] === "";
+}
+
+function isComment(row) {
+  return row[0].startsWith("#");
+}
+
+/** The cells of a comment without its #; none of another row. */
+function namesOfComment(row) {
+  if (!row || !isComment(row)) return [];
+  const [first, ...others] = row;
+  return [first.slice(1).trim(), ...others];
+}
+
+function shown(cells) {
+  return cells.join(",").slice(0, 60);
 }

@@ -1,28 +1,20 @@
 "use strict";
-// One FMU as WebAssembly: variables by name on top of the FMI 2.0 functions of the binary.
+// The plant, an FMU: variables by name on top of the FMI 2.0 functions of the binary.
 
 const COSIMULATION = 1, WARNING = 1; // fmi2Type, fmi2Status
 
-/** Compiles an FMU of FMUS; resolves to what `new Fmu` needs. */
-async function compiled(name) {
-  const text = atob(FMUS[name].wasm);
-  const bytes = Uint8Array.from(text, (character) => character.charCodeAt(0));
-  return { ...FMUS[name], module: await WebAssembly.compile(bytes) };
-}
-
 /** One instance. An error of the FMU is thrown with its own message. */
 class Fmu {
-  constructor(type, name = "page") {
+  /** type: from compiled() */
+  constructor(type) {
     this.type = type;
     this.errors = [];
-    this.warnings = [];
     const page = { log: (status, message) => this.#take(status, message) };
-    this.wasm = new WebAssembly.Instance(type.module, { page }).exports;
-    this.wasm._initialize();
+    this.wasm = instantiated(type, { page });
     const callbacks = this.wasm.page_callbacks();
-    const [instance, guid] = [this.#text(name), this.#text(type.guid)];
-    this.component =
-      this.wasm.fmi2Instantiate(instance, COSIMULATION, guid, 0, callbacks, 0, 0);
+    const name = placed(this.wasm, "page");
+    const guid = placed(this.wasm, type.guid);
+    this.component = this.wasm.fmi2Instantiate(name, COSIMULATION, guid, 0, callbacks, 0, 0);
     if (!this.component) throw new Error(this.#explain("fmi2Instantiate"));
   }
 
@@ -43,29 +35,19 @@ class Fmu {
     if (this.wasm[name](this.component, ...values) > WARNING) throw new Error(this.#explain(name));
   }
 
-  variable(name) {
-    const found = this.type.variables[name];
-    if (!found) throw new Error(`${this.type.name} has no variable ${name}`);
-    return found;
-  }
-
   #setStart(name, value) {
-    if (this.variable(name).type !== "Real" && !Number.isInteger(Number(value)))
-      throw new Error(`${name}: expected a whole number, got ${value}`);
-    new Signals(this, [name]).set([value]);
-  }
-
-  #text(text) {
-    const bytes = new TextEncoder().encode(`${text}\0`), place = this.wasm.malloc(bytes.length);
-    new Uint8Array(this.wasm.memory.buffer, place).set(bytes);
-    return place;
+    const { type, reference } = variableOf(this.type, name);
+    const kind = type === "Enumeration" ? "Integer" : type; // in the names of the functions
+    const references = new WasmArray(this.wasm, Uint32Array, 1);
+    const values = new WasmArray(this.wasm, kind === "Real" ? Float64Array : Int32Array, 1);
+    references.values[0] = reference;
+    values.values[0] = value;
+    this.call(`fmi2Set${kind}`, references.place, 1, values.place);
   }
 
   #take(status, place) {
-    const bytes = new Uint8Array(this.wasm.memory.buffer, place);
-    const message = new TextDecoder().decode(bytes.subarray(0, bytes.indexOf(0)));
-    const list = status > WARNING ? this.errors : this.warnings;
-    if (list.length < 100) list.push(message.replaceAll("%%", "%")); // it is a format
+    if (status <= WARNING) return;
+    this.errors.push(textAt(this.wasm, place).replaceAll("%%", "%")); // it is a format
   }
 
   #explain(failed) {
@@ -74,36 +56,22 @@ class Fmu {
   }
 }
 
-/** Several variables of one type, that are set or read in one call. */
-class Signals {
-  constructor(fmu, variables) {
+/** Several Real outputs, that are read in one call. */
+class Outputs {
+  constructor(fmu, names) {
     this.fmu = fmu;
-    const { type } = fmu.variable(variables[0]);
-    this.type = type === "Enumeration" ? "Integer" : type; // in the names of the functions
-    this.count = variables.length;
-    this.references = fmu.wasm.malloc(4 * this.count);
-    this.place = fmu.wasm.malloc(8 * this.count);
-    new Uint32Array(fmu.wasm.memory.buffer, this.references, this.count)
-      .set(variables.map((name) => fmu.variable(name).reference));
+    this.array = new WasmArray(fmu.wasm, Float64Array, names.length);
+    this.references = new WasmArray(fmu.wasm, Uint32Array, names.length);
+    this.references.values.set(names.map((name) => variableOf(fmu.type, name).reference));
   }
 
-  /** The values of the last call, in the memory of the FMU. */
+  /** The values of the last call of read(). */
   get values() {
-    const buffer = this.fmu.wasm.memory.buffer; // a new one when the memory grows
-    if (this.view?.buffer !== buffer) {
-      const List = this.type === "Real" ? Float64Array : Int32Array;
-      this.view = new List(buffer, this.place, this.count);
-    }
-    return this.view;
+    return this.array.values;
   }
 
-  get() {
-    this.fmu.call(`fmi2Get${this.type}`, this.references, this.count, this.place);
+  read() {
+    this.fmu.call("fmi2GetReal", this.references.place, this.array.length, this.array.place);
     return this.values;
-  }
-
-  set(values) {
-    this.values.set(values);
-    this.fmu.call(`fmi2Set${this.type}`, this.references, this.count, this.place);
   }
 }

@@ -1,10 +1,7 @@
 "use strict";
-// A log of the user: the file, its columns, the parameters, and the answer.
+// A log of the user: the file, the meaning of its columns, and the answer.
 
-const ASKED = ["motor.B", "motor.D_theta", GEAR, "rls.n", "range.phi", "prior.tau_e", "prior.B",
-  "prior.D_theta", "prior.tau_coulomb", "noise.tau"];
-const ASKED_WITH_SETTING = ["rls.m", "setPoint.offset", "setPoint.scale", "range.setPoint",
-  "range.setPoint_center"];
+const MISSING = { side: "side of the gear", zero: "value at zero" }; // other fields are called by their names
 
 const log = {
   form: document.getElementById("log"),
@@ -20,8 +17,9 @@ const log = {
         if (name === "drop") this.take(event.dataTransfer.files[0]);
       });
     this.form.addEventListener("submit", (event) => { event.preventDefault(); this.estimate(); });
-    for (const name of ["input", "change"]) this.form.addEventListener(name, () => this.forget());
-    this.form.addEventListener("change", (event) => { if (event.target.closest("#ports")) this.showParameters(); });
+    for (const name of ["input", "change"])
+      this.form.addEventListener(name, () => { this.forget(); this.showMissing(); });
+    document.getElementById("signals").addEventListener("change", () => this.showWhatIsNeeded());
   },
 
   /** Ends a run and hides its answer, which would be one to other settings. */
@@ -46,105 +44,115 @@ const log = {
     }
     say("log-name", `${file.name}: ${this.table.rows} rows`);
     this.form.hidden = false;
-    this.showPorts(guessed(this.table.names));
-    document.querySelectorAll("#parameters label").forEach((label) => label.remove()); // of another log
-    this.showParameters();
+    parameters.clear(); // they were for another log
+    this.showSignals();
+    this.showWhatIsNeeded();
   },
 
-  showPorts(found) {
-    const body = document.querySelector("#ports tbody");
-    body.replaceChildren(...Object.entries(PORTS).map(([port, about]) => {
-      const row = document.createElement("tr"), { column, unit } = found[port] ?? {};
-      const cell = (title, ...content) => {
-        const made = row.insertCell();
-        made.dataset.title = title;
-        made.append(...content);
+  /** The choices for each signal, none of them made. */
+  showSignals() {
+    this.form.elements["gear ratio"].value = "";
+    const sets = Object.entries(SIGNALS).map(([name, signal]) => {
+      const set = document.createElement("fieldset"), legend = document.createElement("legend");
+      const add = (what, text, field) => {
+        const label = labelled(text, field);
+        label.dataset.what = what;
+        set.append(label);
       };
-      row.dataset.port = port;
-      row.insertCell().textContent = about.title + (about.optional ? " (if there is one)" : "");
-      cell("column", chooser(`${port} column`, ["", ...this.table.names], column ?? ""));
-      cell("unit", chooser(`${port} unit`, Object.keys(about.units), unit));
-      cell("per unit", ...(Object.values(about.units).some((each) => each.per) ? [number(`${port} per`, "")] : []));
-      cell("gear ratio", ...(about.geared ? [number(`${port} gear`, 1)] : []));
-      cell("zero", ...(port === "time" ? [] : [number(`${port} zero`, 0)]));
-      cell("reversed", ...(port === "time" ? [] : [checkbox(`${port} reversed`)]));
-      return row;
-    }));
+      const units = Object.keys(signal.units);
+      const columns = this.table.names.filter(Boolean).map((column) => [column, column]);
+      const none = signal.optional ? { [NO_COLUMN]: "this joint has none" } : {};
+      legend.textContent = signal.title;
+      set.append(legend);
+      add("column", "column", list(`${name} column`, { ...none, ...Object.fromEntries(columns) }));
+      add("unit", "unit", list(`${name} unit`, Object.fromEntries(units.map((unit) => [unit, unit.replaceAll(".", "·")]))));
+      if (units.some((unit) => signal.units[unit].per))
+        add("per", "", Object.assign(number(`${name} per`, ""), { required: true }));
+      if (units.includes("counts")) add("counter", "the counter starts again", list(`${name} counter`, COUNTERS));
+      if (signal.side) add("side", signal.side, list(`${name} side`, SIDES));
+      if (signal.direction) add("direction", signal.direction, list(`${name} direction`, DIRECTIONS));
+      if (name !== "time") add("zero", "value at zero", Object.assign(number(`${name} zero`, 0), { required: true }));
+      return set;
+    });
+    document.getElementById("signals").replaceChildren(...sets);
   },
 
-  chosen(port) {
-    const field = (name) => this.form.elements[`${port} ${name}`];
-    const figure = (name) => (field(name)?.value.trim() ? Number(field(name).value) : NaN);
+  /** Hides the fields that the choices so far do not need. */
+  showWhatIsNeeded() {
+    for (const [name, signal] of Object.entries(SIGNALS)) {
+      const { column, unit } = this.choice(name);
+      const per = signal.units[unit]?.per;
+      const needed = { column: true, per: Boolean(per), counter: unit === "counts" };
+      for (const field of this.form.querySelectorAll(`[name^="${name} "]`)) {
+        const label = field.closest("label"), { what } = label.dataset;
+        field.disabled = label.hidden = what !== "column" && (column === NO_COLUMN || !(needed[what] ?? true));
+        if (what === "per" && per) label.firstChild.textContent = per;
+      }
+    }
+    const { column } = this.choice("theta_c");
+    parameters.show(column !== "" && column !== NO_COLUMN);
+    this.showMissing();
+  },
+
+  /** Required fields without a value. */
+  missing() {
+    return [...this.form.elements].filter((field) => field.willValidate && field.validity.valueMissing);
+  },
+
+  showMissing() {
+    const groups = new Map();
+    for (const { name } of this.missing()) {
+      const [of, what] = name.split(" "); // "theta column" is the column of theta
+      const word = what === "per" ? SIGNALS[of].units[this.choice(of).unit].per : MISSING[what] ?? what;
+      groups.set(of, [...(groups.get(of) ?? []), word]);
+    }
+    const listed = [...groups].map(([of, whats]) => `${of} (${whats.join(", ")})`).join(", ");
+    say("missing", listed ? `Still missing: ${listed}.` : "");
+  },
+
+  /** What is chosen for a signal; empty or NaN where nothing is. */
+  choice(name) {
+    const text = (what) => this.form.elements[`${name} ${what}`]?.value ?? "";
+    const figure = (what) => (text(what).trim() ? Number(text(what)) : NaN);
     return {
-      column: field("column").value,
-      unit: field("unit").value,
+      column: text("column"),
+      unit: text("unit"),
       per: figure("per"),
-      gear: PORTS[port].geared ? figure("gear") : 1,
-      zero: figure("zero"),
-      reversed: field("reversed")?.checked ?? false,
+      counter: text("counter"),
+      side: text("side"),
+      direction: text("direction"),
+      zero: name === "time" ? 0 : figure("zero"),
     };
   },
 
-  /** The signals of the log in the units of the ports, and its sample period [s]. */
+  /** The gear ratio. Throws an error if it is not above 0. */
+  gear() {
+    const ratio = Number(this.form.elements["gear ratio"].value);
+    if (!(ratio > 0)) throw new Error(`gear ratio: expected a number above 0, got ${ratio}`);
+    return ratio;
+  },
+
+  /** The signals of the log in rad and N.m, and its sample period [s]. */
   read() {
-    const ports = {};
-    for (const [port, { optional }] of Object.entries(PORTS)) {
-      const chosen = this.chosen(port);
-      if (chosen.column) ports[port] = converted(this.table.column(chosen.column), port, chosen);
-      else if (!optional) throw new Error(`${port}: choose its column`);
-    }
-    const { time, ...signals } = ports;
+    const gear = this.gear();
+    const choices = Object.fromEntries(Object.keys(SIGNALS).map((name) => [name, this.choice(name)]));
+    checkColumns(choices);
+    const chosen = Object.entries(choices).filter(([, { column }]) => column !== NO_COLUMN);
+    const { time, ...signals } = Object.fromEntries(chosen.map(
+      ([name, choice]) => [name, converted(this.table.column(choice.column), name, choice, gear)]));
     checkMotion(signals);
     return { signals, T: samplePeriod(time, this.table.first) };
   },
 
-  /** A field for each parameter. What the user has typed stays. */
-  showParameters() {
-    for (const port of Object.keys(PORTS)) {
-      const { unit } = this.chosen(port), field = this.form.elements[`${port} per`];
-      if (!field) continue;
-      const { per } = PORTS[port].units[unit];
-      field.closest("td").classList.toggle("unused", !per);
-      field.placeholder = field.title = per ?? "";
-    }
-    const { variables } = joint.estimator, set = document.getElementById("parameters");
-    const names = [...ASKED, ...(this.chosen("theta_c").column ? ASKED_WITH_SETTING : []), "rls.symmetric"];
-    const before = this.typed();
-    const fields = names.map((name) => {
-      const { type, unit, description, start } = variables[name], label = document.createElement("label");
-      label.title = description;
-      const asks = name in GUESSES || name === GEAR;
-      const field = type === "Boolean" ? checkbox(name, before[name] ?? start === "true")
-        : number(name, before[name] ?? (asks ? "" : Number(UNKNOWN[name] ?? start)));
-      if (asks) field.placeholder = name === GEAR ? "fill in" : "from the log";
-      label.append(`${name}${unit && unit !== "1" ? ` [${unit.replaceAll(".", "·").replace(/2\b/, "²")}]` : ""}`, field);
-      return label;
-    });
-    set.replaceChildren(set.querySelector("legend"), ...fields);
-  },
-
-  /** Parameters that have a value. */
-  typed() {
-    const values = {};
-    for (const field of document.querySelectorAll("#parameters input"))
-      if (field.type === "checkbox") values[field.name] = field.checked;
-      else if (field.value.trim() !== "") values[field.name] = Number(field.value);
-    return values;
-  },
-
   starts({ signals, T }) {
-    const values = { ...this.typed() }, { gear } = this.chosen("theta");
-    if (gear !== 1) values[GEAR] ??= gear;
-    if (values[GEAR] === undefined) throw new Error(
-      `${GEAR}: fill in the gear ratio of your joint, between motor and flexibility`);
-    for (const [name, guess] of Object.entries(GUESSES)) values[name] ??= guess(signals, values);
-    const counts = (port) => {
-      const { unit, per, gear } = this.chosen(port);
-      return unit === "counts" ? per * gear : 0; // 0: not quantised
+    const gear = this.gear();
+    const counts = (name) => {
+      const { unit, per, side } = this.choice(name);
+      if (unit !== "counts") return 0; // not quantised
+      return side === "motor" ? per * gear : per;
     };
     return {
-      "rls.m": 1,
-      ...values,
+      ...parameters.values(signals, gear),
       samplePeriod: T,
       method: METHODS.FilteredRegression,
       modality: SCENARIO.estimator.modality,
@@ -153,9 +161,15 @@ const log = {
     };
   },
 
+  /** Estimates, or puts the cursor into the first field that is missing. */
   async estimate() {
-    const bar = document.getElementById("progress");
     this.forget();
+    const [missing] = this.missing();
+    if (missing) {
+      missing.focus();
+      return;
+    }
+    const bar = document.getElementById("progress");
     let run = null;
     try {
       const data = this.read();
@@ -164,33 +178,10 @@ const log = {
       await run.run((done) => { bar.value = done; }, () => this.run !== run);
       if (this.run === run) answer.show(run);
     } catch (error) {
-      if (this.run === run) say("log-message", withAdvice(error.message, this.typed()));
+      if (this.run === run) say("log-message", parameters.withAdvice(error.message));
     }
     if (this.run === run) bar.hidden = true; // another one may run by now
   },
 };
-
-// Inputs, each with its name for those who hear the page.
-
-function chooser(name, values, chosen) {
-  const made = named("select", name);
-  made.append(...values.map((value) => new Option(value || "none", value, false, value === chosen)));
-  return made;
-}
-
-function number(name, value) {
-  return Object.assign(named("input", name), { type: "number", step: "any", value });
-}
-
-function checkbox(name, checked = false) {
-  return Object.assign(named("input", name), { type: "checkbox", checked });
-}
-
-function named(tag, name) {
-  const made = document.createElement(tag);
-  made.name = name;
-  made.setAttribute("aria-label", name);
-  return made;
-}
 
 log.open();

@@ -5,22 +5,16 @@
 class Simulation {
   /**
    * plant, estimator: from compiled(); start values of each by name, in { plant, estimator }
-   * record: { plant, estimator }, names of Real outputs to read at each sample
+   * record: { plant, estimator }, names of outputs to read at each sample; Real ones of the plant
    */
   constructor(plant, estimator, start, record) {
     this.start = start;
     this.k = 0;
     this.plant = new Fmu(plant);
-    this.estimator = new Fmu(estimator);
     this.plant.initialize(start.plant);
-    this.estimator.initialize(start.estimator);
-    this.sent = new Signals(this.plant, Object.values(SCENARIO.connections));
-    this.received = new Signals(this.estimator, Object.keys(SCENARIO.connections));
-    this.recorded = {
-      plant: new Signals(this.plant, record.plant),
-      estimator: new Signals(this.estimator, record.estimator),
-    };
-    this.doubt = new Signals(this.estimator, ["doubt"]);
+    this.estimator = new Estimator(estimator, start.estimator, record.estimator);
+    this.measured = new Outputs(this.plant, Object.values(SCENARIO.connections));
+    this.recorded = new Outputs(this.plant, record.plant);
   }
 
   /** Time of the next sample [s]. */
@@ -28,15 +22,15 @@ class Simulation {
     return SCENARIO.T * this.k;
   }
 
-  /** One sample. What was recorded of it is in `recorded`, until the next one. */
+  /** One sample. Returns { plant, estimator }, the values of what is recorded, until the next one. */
   advance() {
-    const T = SCENARIO.T, t = this.time;
-    this.recorded.plant.get();
-    this.received.set(this.sent.get());
-    this.estimator.step(t, T);
-    this.recorded.estimator.get();
-    this.doubt.get();
-    this.plant.step(t, T);
+    const inputs = Object.keys(SCENARIO.connections);
+    const plant = this.recorded.read();
+    const measured = this.measured.read();
+    const signals = Object.fromEntries(inputs.map((name, i) => [name, [measured[i]]]));
+    const outputs = this.estimator.run(signals);
+    this.plant.step(this.time, SCENARIO.T);
     this.k += 1;
+    return { plant, estimator: Object.values(outputs).map(([value]) => value) };
   }
 }

@@ -7,15 +7,39 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from selenium.webdriver.common.keys import Keys
 
 import sigmahat
 from live_page import LivePage, csv, live_page
 from recorded_logs import Array, awas_log
+from sigmahat import guess
+from sigmahat.files import toml_file
 from sigmahat.fmi.instance import Value
 
 KNEE_FILE = Path(__file__).parents[2] / "examples" / "tutorial" / "knee.csv"
 KNEE = KNEE_FILE.read_text(encoding="utf-8")
-KNEE_FIELDS = {"theta per": 4096, "theta gear": 100, "tau per": 0.1, "motor.gamma": ""}
+NONE = " none"
+"""The choice that there is no such column."""
+KNEE_FIELDS = {
+    "gear ratio": 100,
+    **{"time column": "time_s", "time unit": "s"},
+    **{"theta column": "motor_counts", "theta unit": "counts", "theta per": 4096},
+    **{"theta counter": 16, "theta side": "motor", "theta direction": "same"},
+    **{"q column": "link_deg", "q unit": "deg"},
+    **{"tau column": "current_A", "tau unit": "A", "tau per": 0.1},
+    **{"tau side": "motor", "tau direction": "same", "theta_c column": NONE},
+}
+"""The choices for the log of the tutorial."""
+FIELDS = {
+    "gear ratio": 50,
+    **{"time column": "time", "time unit": "s"},
+    **{"theta column": "theta", "theta unit": "rad"},
+    **{"theta side": "joint", "theta direction": "same"},
+    **{"q column": "q", "q unit": "rad"},
+    **{"tau column": "tau", "tau unit": "N.m", "tau side": "motor", "tau direction": "same"},
+    "theta_c column": NONE,
+}
+"""The choices for a log whose columns have the names and units of the signals."""
 RECORD = ["sigma", "sigma_std", "doubt"]
 ANSWER = r"Stiffness, with 95 % band: \d+\.\d ± \d\d\.\d N·m/rad at 0 rad \(confident\)\. "
 """Beginning of the result for KNEE."""
@@ -53,16 +77,20 @@ def test_the_log_of_the_tutorial(page: LivePage) -> None:
     given = parameters(page)
     assert given["motor.gamma"] == 100  # the gear ratio of theta
     assert given["samplePeriod"] == pytest.approx(t[1] - t[0])
-    expected = sigmahat.Estimator(given, RECORD).run(theta, np.radians(degrees), 0.1 * current)
+    estimator = sigmahat.Estimator(given, RECORD)
+    expected = estimator.run(theta, np.radians(degrees), 0.1 * current)
     for name, values in found.items():
         size = np.ptp(expected[name][1000:])
         assert np.max(np.abs(values - expected[name])[1000:]) < 1e-9 * size, name
     curve = page.arrays(_CURVES)
-    phi, sigma, std = (curve[f"{name} 0"] for name in ("phi", "sigma", "std"))
+    phi, sigma, std = (curve[f"{name} 0"] for name in ("phi", "sigma", "sigma_std"))
+    for name, values in estimator.evaluate(phi, curve["setPoint 0"][0]).items():
+        error = np.max(np.abs(curve[f"{name} 0"] - values))
+        assert error < 1e-9 * np.max(np.abs(values)), name
     # The script record.py made this log with the spring tau_e = 300 phi + 25000 phi^3.
     assert np.all(np.abs(sigma - (300 + 75000 * phi**2)) < 3 * std)
-    torque = np.abs(curve["torque 0"] - (300 * phi + 25000 * phi**3))
-    assert np.all(torque <= 3 * curve["torqueStd 0"] + 1e-9)
+    torque = np.abs(curve["tau_e 0"] - (300 * phi + 25000 * phi**3))
+    assert np.all(torque <= 3 * curve["tau_e_std 0"] + 1e-9)
     assert np.count_nonzero(phi == 0) == 1 and std.max() < 50
     assert re.match(ANSWER, page.text("answer")), page.text("answer")
     half = (expected["doubt"] == "None")[len(t) // 2 :]
@@ -71,7 +99,7 @@ def test_the_log_of_the_tutorial(page: LivePage) -> None:
 
 def test_a_negative_stiffness_is_not_confident_and_is_drawn(page: LivePage) -> None:
     assert page.drops(KNEE, "knee.csv") == ""
-    assert page.estimates({**KNEE_FIELDS, "tau reversed": True}) == ""
+    assert page.estimates({**KNEE_FIELDS, "tau direction": "opposite"}) == ""
     value, rest = page.text("answer").removeprefix("Stiffness, with 95 % band: ").split(" ", 1)
     assert float(value.replace("\N{MINUS SIGN}", "-")) < 0
     assert "(NegativeStiffness: 100 %)" in rest  # of the second half
@@ -106,7 +134,7 @@ def test_parameters_of_one_file_are_not_those_of_the_next(page: LivePage) -> Non
     shown = []
     for _ in range(2):
         assert page.drops(KNEE, "knee.csv") == ""
-        shown.append(page.page.run("return log.typed()"))
+        shown.append(page.page.run("return parameters.typed()"))
         page.fills({"motor.B": 1, "noise.tau": 2, "rls.symmetric": False})
     assert shown[0] == shown[1]
 
@@ -114,10 +142,9 @@ def test_parameters_of_one_file_are_not_those_of_the_next(page: LivePage) -> Non
 def test_a_log_with_a_motor_that_sets_the_stiffness(page: LivePage) -> None:
     columns = awas_log(0.4, 0.3)
     assert page.drops(csv(columns)) == ""
-    names = {"time": "t", "theta": "theta", "q": "q", "tau": "tau", "theta_c": "theta_c"}
-    for port, column in names.items():
-        assert page.page.run("return log.chosen(arguments[0]).column", port) == column
-    assert page.estimates({"motor.gamma": 50, "rls.m": 3}) == ""
+    setting = {"theta_c column": "theta_c", "theta_c unit": "rad"}
+    page.fills({**FIELDS, "time column": "t", **setting})
+    assert page.estimates({"rls.m": 3}) == ""
     ports = (columns[name] for name in ("theta", "q", "tau", "theta_c"))
     expected = sigmahat.Estimator(parameters(page)).run(*ports)
     (sigma,) = page.columns_of_run(["sigma"]).values()
@@ -127,7 +154,7 @@ def test_a_log_with_a_motor_that_sets_the_stiffness(page: LivePage) -> None:
     settings = [curves[f"setPoint {i}"][0] for i in range(3)]
     assert settings[0] < settings[1] < settings[2]
     for i, setting in enumerate(settings):  # (29), of the lever arm in mm
-        phi, found, std = (curves[f"{name} {i}"] for name in ("phi", "sigma", "std"))
+        phi, found, std = (curves[f"{name} {i}"] for name in ("phi", "sigma", "sigma_std"))
         true = 2 * 14220 * (setting / 1000) ** 2 * np.cos(2 * phi)
         assert np.all(np.abs(found - true) < 3 * std)
 
@@ -137,6 +164,10 @@ def test_decimal_commas_quotes_and_units(page: LivePage) -> None:
     lines = ["Zeit_ms;Motor_Winkel_deg;Abtrieb_Winkel_deg;Drehmoment_mNm"]
     lines += [f'{1000 * x:g};"{x:.6f}";{2 * x:.6f};{50 * x:.6f}'.replace(".", ",") for x in t]
     assert page.drops("\r\n".join(lines)) == ""
+    time, theta, q, tau = lines[0].split(";")
+    columns = {"time column": time, "theta column": theta, "q column": q, "tau column": tau}
+    units = {"time unit": "ms", "theta unit": "deg", "q unit": "deg", "tau unit": "mN.m"}
+    page.fills({**FIELDS, **columns, **units})
     script = "const { signals, T } = log.read(); return { ...signals, T: [T] }"
     found = page.arrays(script)
     np.testing.assert_allclose(found["T"], 0.001)
@@ -163,11 +194,70 @@ def test_names_behind_a_hash_as_numpy_writes_them(page: LivePage) -> None:
 
 
 def test_the_page_has_every_unit_that_names_tell(page: LivePage) -> None:
-    script = """
-    const known = Object.values(PORTS).flatMap(({ units }) => Object.keys(units));
-    return Object.keys(WORDS.unit).filter((unit) => !known.includes(unit));
+    words = toml_file.read(Path(guess.__file__).with_name("vocabulary.toml")).unwrap()
+    script = "return Object.values(SIGNALS).flatMap(({ units }) => Object.keys(units))"
+    assert set(words["unit"]) <= set(page.page.run(script))
+
+
+def test_the_sides_of_the_gear_and_the_directions(page: LivePage) -> None:
+    """The encoder may be behind the gear, and the torque before it, or the other way round."""
+    assert page.drops(csv(good())) == ""
+    script = "const { signals } = log.read(); return signals"
+    read = {}
+    for side in ("motor", "joint"):
+        for direction in ("same", "opposite"):
+            sides = {"theta side": side, "tau side": side}
+            directions = {"theta direction": direction, "tau direction": direction}
+            page.fills({**FIELDS, **sides, **directions})
+            read[side, direction] = page.arrays(script)
+    for side, theta, tau in (("motor", 1 / 50, 1.0), ("joint", 1.0, 1 / 50)):
+        for direction, sign in (("same", 1), ("opposite", -1)):
+            found = read[side, direction]
+            np.testing.assert_allclose(found["theta"], sign * theta * good()["theta"], rtol=1e-12)
+            np.testing.assert_allclose(found["tau"], sign * tau * good()["tau"], rtol=1e-12)
+            np.testing.assert_allclose(found["q"], good()["q"], rtol=1e-12)
+
+
+def test_nothing_is_guessed_and_what_is_missing_is_said(page: LivePage) -> None:
+    missing = (
+        "Still missing: gear (ratio), time (column, unit), "
+        "theta (column, unit, side of the gear, direction), q (column, unit), "
+        "tau (column, unit, side of the gear, direction), theta_c (column, unit)."
+    )
+    for text in (csv(good()), KNEE):  # whatever the columns are called
+        assert page.drops(text) == ""
+        assert page.text("missing") == missing
+        assert page.estimates({}) == missing
+        assert page.page.run("return document.activeElement.name") == "gear ratio"
+    chosen = {name: value for name, value in KNEE_FIELDS.items() if name != "theta unit"}
+    page.fills(chosen)
+    assert page.text("missing") == "Still missing: theta (unit)."
+    page.fills({"theta unit": "counts", "theta per": ""})
+    assert page.text("missing") == "Still missing: theta (counts per turn)."
+    page.fills({"theta per": 4096})
+    assert page.text("missing") == ""
+
+
+def test_every_field_has_a_label_and_a_place_for_the_keyboard(page: LivePage) -> None:
+    assert page.drops(KNEE, "knee.csv") == ""
+    page.fills(KNEE_FIELDS)
+    without = """
+    return [...document.querySelectorAll("input:enabled, select:enabled")]
+      .filter((field) => ![...field.labels].some((label) => label.textContent.trim()))
+      .map((field) => field.name || field.id);
     """
-    assert page.page.run(script) == []
+    assert page.page.run(without) == []
+    page.page.run("log.form.elements['gear ratio'].focus()")
+    shown = """
+    return [...log.form.elements].filter((field) => field.willValidate && !field.disabled)
+      .map((field) => field.name);
+    """
+    names = page.page.run(shown)
+    visited = []
+    for _ in names:
+        visited.append(page.page.run("return document.activeElement.name"))
+        page.page.driver.switch_to.active_element.send_keys(Keys.TAB)
+    assert visited == names
 
 
 # ---- refused -------------------------------------------------------------------------------------
@@ -216,37 +306,52 @@ def test_a_bad_column_is_named(page: LivePage) -> None:
         ("time", uneven, f"time: {steps}"),
     ):
         assert page.drops(csv({**good(), name: values})) == ""
-        assert page.estimates({"motor.gamma": 50}).startswith(expected)
+        assert page.estimates(FIELDS).startswith(expected)
+    text = "time,theta,q,tau,notes\n" + "".join(f"{k},0.5,1,2,good\n" for k in range(200))
+    assert page.drops(text) == ""
+    expected = 'row 2, column notes: expected a finite number, got "good"'
+    assert page.estimates({**FIELDS, "tau column": "notes"}) == expected
+    for q, expected in (
+        (good()["theta"], "theta and q do not differ: choose another column"),
+        (good()["theta"] + 0.1, "theta and q: expected a deformation that changes, got "),
+    ):
+        assert page.drops(csv({**good(), "q": q})) == ""
+        assert page.estimates(FIELDS).startswith(expected)
 
 
 @pytest.mark.parametrize(
     ("fields", "expected"),
     [
-        ({"tau column": ""}, "tau: choose its column"),
-        ({"theta gear": 0}, "theta: expected a gear ratio above 0, got 0"),
-        ({"q unit": "counts", "q per": ""}, "q: expected a number above 0 for counts per turn"),
-        ({"q zero": ""}, "q: expected a number as zero"),
-        ({"motor.gamma": ""}, "motor.gamma: fill in the gear ratio of your joint"),
+        ({"tau column": ""}, "Still missing: tau (column)."),
+        ({"gear ratio": ""}, "Still missing: gear (ratio)."),
+        ({"gear ratio": 0}, "gear ratio: expected a number above 0, got 0"),
+        ({"gear ratio": -50}, "gear ratio: expected a number above 0, got -50"),
+        ({"q unit": "counts"}, "Still missing: q (counts per turn, counter)."),
+        (
+            {"q unit": "counts", "q per": 0, "q counter": "never"},
+            "q: expected a number above 0 for counts per turn, got 0",
+        ),
+        ({"q zero": ""}, "Still missing: q (value at zero)."),
         ({"rls.n": 2.5}, "rls.n: expected a whole number, got 2.5"),
-        ({"rls.n": 6, "motor.gamma": 0}, "motor.gamma = 0 "),  # the FMU says it
-        ({"motor.B": -1}, "Parameter motor.B = -1 is out of its range"),
-        ({"q column": "theta"}, "theta and q do not differ: choose another column"),
-        ({"q column": "theta", "q zero": 0.1}, "expected a deformation that changes, got "),
+        ({"rls.n": 9}, "rls.n: expected 1 to 8, got 9"),  # the estimator says it
+        ({"motor.B": -1}, "motor.B: expected >= 1e-15, got -1"),
+        ({"q column": "theta"}, "theta and q have the same column, theta: choose another one"),
+        ({"theta_c column": "tau", "theta_c unit": "rad"}, "tau and theta_c have the same column"),
         ({"time unit": "us"}, "Is the unit of the time right?"),
-        ({"time unit": "ns"}, "Parameter samplePeriod = 1e-12 is out of its range"),
-        ({"theta gear": 1e-9}, "range.phi = 237226998 is out of its range"),
+        ({"time unit": "ns"}, "samplePeriod: expected >= 1e-9, got 1e-12"),
+        (
+            {"gear ratio": 1e-9, "theta side": "motor"},
+            "range.phi: expected 1e-6 to 1e6, got 237226998",
+        ),
     ],
     ids=lambda value: "-".join(value) if isinstance(value, dict) else "",
 )
 def test_a_bad_field_is_named(fields: dict[str, object], expected: str, page: LivePage) -> None:
     assert page.drops(csv(good())) == ""
-    assert expected in page.estimates({"motor.gamma": 50, **fields})
+    assert expected in page.estimates({**FIELDS, **fields})
 
 
-def test_what_is_guessed_is_called_so(page: LivePage) -> None:
+def test_what_comes_from_the_log_is_called_so(page: LivePage) -> None:
     assert page.drops(csv({**good(), "q": 1e9 * good()["tau"]})) == ""
-    assert page.estimates({"motor.gamma": 50}).endswith("or fill it in.")
-    assert "guessed" not in page.estimates({"range.phi": 1e9})
-    # A negative gear ratio is valid: the guess of the largest torque uses the magnitude of the
-    # ratio.
-    assert page.drops(csv(good())) == "" and page.estimates({"motor.gamma": -50}) == ""
+    assert page.estimates(FIELDS).endswith("or fill it in.")
+    assert "from the log" not in page.estimates({"range.phi": 1e9})

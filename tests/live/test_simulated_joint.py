@@ -12,6 +12,7 @@ import pytest
 from selenium.webdriver.common.keys import Keys
 
 import sigmahat
+from browser import opened
 from live_page import LivePage, live_page
 from sigmahat.experiments.engine import run
 from sigmahat.paper.scenarios import scenario
@@ -41,9 +42,9 @@ const found = {};
 for (const [of, names] of Object.entries(record))
   for (const name of names) found[`${of} ${name}`] = new Float64Array(count);
 for (let k = 0; k < count; k += 1) {
-  simulation.advance();
+  const values = simulation.advance();
   for (const [of, names] of Object.entries(record))
-    names.forEach((name, i) => { found[`${of} ${name}`][k] = simulation.recorded[of].values[i]; });
+    names.forEach((name, i) => { found[`${of} ${name}`][k] = values[of][i]; });
 }
 return found;
 """
@@ -132,12 +133,31 @@ def test_the_band_holds_without_noise(page: LivePage) -> None:
         assert page.text("value-doubt") == "confident"
 
 
-def test_what_an_fmu_refuses_is_shown_in_its_own_words(page: LivePage) -> None:
-    page.page.run("joint.form.elements.friction.min = -200")
+def test_what_plant_and_estimator_refuse_is_shown_in_their_own_words(page: LivePage) -> None:
+    fields = "const { coulomb, friction } = joint.form.elements;"
+    page.page.run(f"{fields} friction.min = -200; coulomb.min = -5")
     page.sets("friction", -150)
-    assert "motor.D_theta = -0.0005" in page.text("joint-message")
+    assert "motor.D_theta: expected >= 0, got -0.0005" in page.text("joint-message")
     page.sets("friction", 0)
     assert page.text("joint-message") == ""
+    page.sets("coulomb", -5)
+    assert "motor.tau_coulomb = -0.005" in page.text("joint-message")
+    page.sets("coulomb", 0)
+    assert page.text("joint-message") == ""
+
+
+REFUSED = """
+const done = arguments[0];
+document.addEventListener("securitypolicyviolation", (event) => done(event.effectiveDirective));
+fetch("http://127.0.0.1:9/").catch(() => {});
+"""
+"""Message of the browser after an attempt to send something."""
+
+
+@pytest.mark.parametrize("asked", ["?ws=ws://127.0.0.1:8765", ""])
+def test_the_page_reaches_no_address(asked: str, site: Path) -> None:
+    with opened((site / "live" / "index.html").as_uri() + asked) as page:
+        assert page.driver.execute_async_script(REFUSED) == "connect-src"
 
 
 @pytest.mark.parametrize(("width", "dark"), [(1400, False), (360, True)], ids=["desk", "phone"])

@@ -1,0 +1,28 @@
+"use strict";
+// Fields of forms.
+
+/** A list in which nothing is chosen at first. items: what is shown, by value */
+function list(name, items) {
+  const made = named("select", name);
+  made.append(new Option("choose", ""), ...Object.entries(items).map(([value, text]) => new Option(text, value)));
+  return Object.assign(made, { required: true });
+}
+
+function number(name, value) {
+  return Object.assign(named("input", name), { type: "number", step: "any", value });
+}
+
+function checkbox(name, checked) {
+  return Object.assign(named("input", name), { type: "checkbox", checked });
+}
+
+/** A field below its text. */
+function labelled(text, field) {
+  const label = document.createElement("label");
+  label.append(Object.assign(document.createElement("span"), { textContent: text }), field);
+  return label;
+}
+
+function named(tag, name) {
+  return Object.assign(document.createElement(tag), { name });
+}

@@ -1,0 +1,62 @@
+"use strict";
+// The parameters of the estimator for a log: the fields of the page, and their values.
+
+const ASKED = ["motor.B", "motor.D_theta", "rls.n", "range.phi", "prior.tau_e", "prior.B",
+  "prior.D_theta", "prior.tau_coulomb", "noise.tau"];
+const ASKED_WITH_SETTING = ["rls.m", "setPoint.offset", "setPoint.scale", "range.setPoint",
+  "range.setPoint_center"];
+const ROOM = 1.2; // of a range over what the log has
+const MEASURED = { // sizes of the signals, unless the user gives a value
+  "range.phi": ({ theta, q }) => ROOM * largest(q.map((value, i) => value - theta[i])),
+  "noise.tau": ({ tau }) => noise(tau),
+  "prior.tau_e": ({ tau }, gear) => ROOM * gear * largest(tau),
+};
+
+const parameters = {
+  set: document.getElementById("parameters"),
+
+  /** A field for each parameter. What the user has typed stays. */
+  show(hasSetting) {
+    const { variables } = ESTIMATOR, before = this.typed();
+    const names = [...ASKED, ...(hasSetting ? ASKED_WITH_SETTING : []), "rls.symmetric"];
+    const labels = names.map((name) => {
+      const { type, unit, description, start } = variables[name];
+      const measured = name in MEASURED;
+      const field = type === "Boolean" ? checkbox(name, before[name] ?? start === "true")
+        : number(name, before[name] ?? (measured ? "" : Number(UNKNOWN[name] ?? start)));
+      if (measured) field.placeholder = "from the log";
+      const shown = unit && unit !== "1" ? ` [${unit.replaceAll(".", "·").replace(/2\b/, "²")}]` : "";
+      return Object.assign(labelled(`${name}${shown}`, field), { title: description });
+    });
+    this.set.replaceChildren(this.set.querySelector("legend"), ...labels);
+  },
+
+  /** Forgets what the user has typed. */
+  clear() {
+    for (const label of this.set.querySelectorAll("label")) label.remove();
+  },
+
+  /** Parameters that have a value. */
+  typed() {
+    const values = {};
+    for (const field of this.set.querySelectorAll("input"))
+      if (field.type === "checkbox") values[field.name] = field.checked;
+      else if (field.value.trim() !== "") values[field.name] = Number(field.value);
+    return values;
+  },
+
+  /** All values for the signals of a log; gear: its ratio. */
+  values(signals, gear) {
+    const measured = Object.entries(MEASURED).map(([name, size]) => [name, size(signals, gear)]);
+    return { ...Object.fromEntries(measured), "rls.m": 1, ...this.typed(), "motor.gamma": gear };
+  },
+
+  /** A message of the estimator, and what to do where it names a value that the user has not typed. */
+  withAdvice(message) {
+    if (/samplePeriod/.test(message)) return `${message} Is the unit of the time right? `
+      + "A log with steps of more than 5.7 ms needs a smaller regression.bandwidth, which the command sigmahat estimate takes.";
+    const typed = this.typed();
+    const measured = Object.keys(MEASURED).find((name) => message.startsWith(`${name}: `) && !(name in typed));
+    return measured ? `${message}. It comes from the log: look at the units and the gear ratio, or fill it in.` : message;
+  },
+};
