@@ -61,7 +61,7 @@ const log = {
       };
       const units = Object.keys(signal.units);
       const columns = this.table.names.filter(Boolean).map((column) => [column, column]);
-      const none = signal.optional ? { [NO_COLUMN]: "this joint has none" } : {};
+      const none = signal.optional ? { [NO_COLUMN]: "none" } : {};
       legend.textContent = signal.title;
       set.append(legend);
       add("column", "column", list(`${name} column`, { ...none, ...Object.fromEntries(columns) }));
@@ -103,10 +103,11 @@ const log = {
     const groups = new Map();
     for (const { name } of this.missing()) {
       const [of, what] = name.split(" "); // "theta column" is the column of theta
-      const word = what === "per" ? SIGNALS[of].units[this.choice(of).unit].per : MISSING[what] ?? what;
-      groups.set(of, [...(groups.get(of) ?? []), word]);
+      const words = groups.get(of) ?? [];
+      if (what) words.push(what === "per" ? SIGNALS[of].units[this.choice(of).unit].per : MISSING[what] ?? what);
+      groups.set(of, words);
     }
-    const listed = [...groups].map(([of, whats]) => `${of} (${whats.join(", ")})`).join(", ");
+    const listed = [...groups].map(([of, words]) => (words.length ? `${of} (${words.join(", ")})` : of)).join(", ");
     say("missing", listed ? `Still missing: ${listed}.` : "");
   },
 

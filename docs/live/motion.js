@@ -40,7 +40,17 @@ function largest(values) {
 }
 
 function spread(values) {
-  const high = values.reduce((most, value) => Math.max(most, value), -Infinity);
-  const low = values.reduce((least, value) => Math.min(least, value), Infinity);
+  const [low, high] = extremes(values);
   return high - low;
+}
+
+function middle(values) {
+  const [low, high] = extremes(values);
+  return (low + high) / 2;
+}
+
+function extremes(values) {
+  const low = values.reduce((least, value) => Math.min(least, value), Infinity);
+  const high = values.reduce((most, value) => Math.max(most, value), -Infinity);
+  return [low, high];
 }

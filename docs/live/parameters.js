@@ -5,11 +5,14 @@ const ASKED = ["motor.B", "motor.D_theta", "rls.n", "range.phi", "prior.tau_e", 
   "prior.D_theta", "prior.tau_coulomb", "noise.tau"];
 const ASKED_WITH_SETTING = ["rls.m", "setPoint.offset", "setPoint.scale", "range.setPoint",
   "range.setPoint_center"];
+const REQUIRED = ["setPoint.offset", "setPoint.scale"]; // no value of another robot fits
 const ROOM = 1.2; // of a range over what the log has
 const MEASURED = { // sizes of the signals, unless the user gives a value
   "range.phi": ({ theta, q }) => ROOM * largest(q.map((value, i) => value - theta[i])),
   "noise.tau": ({ tau }) => noise(tau),
-  "prior.tau_e": ({ tau }, gear) => ROOM * gear * largest(tau),
+  "prior.tau_e": ({ tau }, { "motor.gamma": gear }) => ROOM * gear * largest(tau),
+  "range.setPoint": (signals, given) => (ROOM / 2) * spread(setPoints(signals, given)),
+  "range.setPoint_center": (signals, given) => middle(setPoints(signals, given)),
 };
 
 const parameters = {
@@ -21,9 +24,10 @@ const parameters = {
     const names = [...ASKED, ...(hasSetting ? ASKED_WITH_SETTING : []), "rls.symmetric"];
     const labels = names.map((name) => {
       const { type, unit, description, start } = variables[name];
-      const measured = name in MEASURED;
-      const field = type === "Boolean" ? checkbox(name, before[name] ?? start === "true")
-        : number(name, before[name] ?? (measured ? "" : Number(UNKNOWN[name] ?? start)));
+      const measured = name in MEASURED, required = REQUIRED.includes(name);
+      const value = before[name] ?? (measured || required ? "" : Number(UNKNOWN[name] ?? start));
+      const field = type === "Boolean" ? checkbox(name, before[name] ?? start === "true") : number(name, value);
+      field.required = required;
       if (measured) field.placeholder = "from the log";
       const shown = unit && unit !== "1" ? ` [${unit.replaceAll(".", "·").replace(/2\b/, "²")}]` : "";
       return Object.assign(labelled(`${name}${shown}`, field), { title: description });
@@ -47,8 +51,10 @@ const parameters = {
 
   /** All values for the signals of a log; gear: its ratio. */
   values(signals, gear) {
-    const measured = Object.entries(MEASURED).map(([name, size]) => [name, size(signals, gear)]);
-    return { ...Object.fromEntries(measured), "rls.m": 1, ...this.typed(), "motor.gamma": gear };
+    const given = { ...this.typed(), "motor.gamma": gear };
+    const names = Object.keys(MEASURED).filter((name) => signals.theta_c || !name.startsWith("range.setPoint"));
+    const measured = names.map((name) => [name, MEASURED[name](signals, given)]);
+    return { "rls.m": 1, ...Object.fromEntries(measured), ...given };
   },
 
   /** A message of the estimator, and what to do where it names a value that the user has not typed. */
@@ -60,3 +66,7 @@ const parameters = {
     return measured ? `${message}. It comes from the log: look at the units and the gear ratio, or fill it in.` : message;
   },
 };
+
+function setPoints({ theta_c }, { "setPoint.offset": offset, "setPoint.scale": scale }) {
+  return theta_c.map((position) => offset + scale * position);
+}

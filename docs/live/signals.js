@@ -26,7 +26,7 @@ const SIGNALS = {
   theta: {
     title: "theta: position of the motor",
     units: ANGLES,
-    side: "its encoder is",
+    side: "encoder: side of the gear",
     behind: "motor",
     direction: "positive direction",
   },
@@ -34,21 +34,21 @@ const SIGNALS = {
   tau: {
     title: "tau: torque of the motor",
     units: TORQUES,
-    side: "it is measured",
+    side: "measured: side of the gear",
     behind: "joint",
     direction: "positive direction",
   },
   theta_c: {
-    title: "theta_c: position of the motor that sets the stiffness",
+    title: "theta_c: setting of the stiffness",
     units: { ...ANGLES, mm: { factor: 1 } },
     optional: true,
   },
 };
 const NO_COLUMN = " none"; // no name of a column, as these begin with no space
-const SIDES = { motor: "on the motor's side of the gear", joint: "on the joint's side of the gear" };
-const DIRECTIONS = { same: "as that of q", opposite: "opposite to that of q" };
+const SIDES = { motor: "motor's side", joint: "joint's side" };
+const DIRECTIONS = { same: "as q", opposite: "opposite to q" };
 const COUNTERS = Object.fromEntries(
-  [["never", "never"], ...[8, 10, 12, 14, 16, 18, 20, 24, 32].map((bits) => [bits, `after 2^${bits} = ${2 ** bits}`])]);
+  [["never", "never"], ...[8, 10, 12, 14, 16, 18, 20, 24, 32].map((bits) => [bits, `after ${2 ** bits}`])]);
 
 /**
  * The values of a column as a signal: zero at `zero`, in rad, N.m or s; theta and q at the joint,

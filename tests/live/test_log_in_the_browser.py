@@ -144,7 +144,9 @@ def test_a_log_with_a_motor_that_sets_the_stiffness(page: LivePage) -> None:
     assert page.drops(csv(columns)) == ""
     setting = {"theta_c column": "theta_c", "theta_c unit": "rad"}
     page.fills({**FIELDS, "time column": "t", **setting})
-    assert page.estimates({"rls.m": 3}) == ""
+    assert page.text("missing") == "Still missing: setPoint.offset, setPoint.scale."
+    lever_arm = {"setPoint.offset": 100, "setPoint.scale": -2.5 / (2 * np.pi)}  # in mm
+    assert page.estimates({"rls.m": 3, **lever_arm}) == ""
     ports = (columns[name] for name in ("theta", "q", "tau", "theta_c"))
     expected = sigmahat.Estimator(parameters(page)).run(*ports)
     (sigma,) = page.columns_of_run(["sigma"]).values()
@@ -336,7 +338,10 @@ def test_a_bad_column_is_named(page: LivePage) -> None:
         ({"rls.n": 9}, "rls.n: expected 1 to 8, got 9"),  # the estimator says it
         ({"motor.B": -1}, "motor.B: expected >= 1e-15, got -1"),
         ({"q column": "theta"}, "theta and q have the same column, theta: choose another one"),
-        ({"theta_c column": "tau", "theta_c unit": "rad"}, "tau and theta_c have the same column"),
+        (
+            {"theta_c column": "tau"},
+            "Still missing: theta_c (unit), setPoint.offset, setPoint.scale.",
+        ),
         ({"time unit": "us"}, "Is the unit of the time right?"),
         ({"time unit": "ns"}, "samplePeriod: expected >= 1e-9, got 1e-12"),
         (
