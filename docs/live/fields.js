@@ -1,11 +1,11 @@
 "use strict";
 // Fields of forms.
 
-/** A list in which nothing is chosen at first. items: what is shown, by value */
+/** A list in which nothing is chosen at first. items: [value, what is shown] of each */
 function list(name, items) {
   const made = named("select", name);
-  made.append(new Option("choose", ""), ...Object.entries(items).map(([value, text]) => new Option(text, value)));
-  return Object.assign(made, { required: true });
+  made.append(new Option("choose", ""), ...items.map(([value, text]) => new Option(text, value)));
+  return required(made);
 }
 
 function number(name, value) {
@@ -14,6 +14,10 @@ function number(name, value) {
 
 function checkbox(name, checked) {
   return Object.assign(named("input", name), { type: "checkbox", checked });
+}
+
+function required(field) {
+  return Object.assign(field, { required: true });
 }
 
 /** A field below its text. */

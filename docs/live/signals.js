@@ -20,14 +20,14 @@ const TORQUES = {
 };
 const TIMES = { s: { factor: 1 }, ms: { factor: 1e-3 }, us: { factor: 1e-6 }, ns: { factor: 1e-9 } };
 
-// `behind`: the side of the gear on which the column is the signal times the gear ratio.
+// `geared`: the side of the gear on which the column is the signal times the gear ratio.
 const SIGNALS = {
   time: { title: "time", units: TIMES },
   theta: {
     title: "theta: position of the motor",
     units: ANGLES,
     side: "encoder: side of the gear",
-    behind: "motor",
+    geared: "motor",
     direction: "positive direction",
   },
   q: { title: "q: position of the link", units: ANGLES },
@@ -35,7 +35,7 @@ const SIGNALS = {
     title: "tau: torque of the motor",
     units: TORQUES,
     side: "measured: side of the gear",
-    behind: "joint",
+    geared: "joint",
     direction: "positive direction",
   },
   theta_c: {
@@ -45,10 +45,11 @@ const SIGNALS = {
   },
 };
 const NO_COLUMN = " none"; // no name of a column, as these begin with no space
-const SIDES = { motor: "motor's side", joint: "joint's side" };
-const DIRECTIONS = { same: "as q", opposite: "opposite to q" };
-const COUNTERS = Object.fromEntries(
-  [["never", "never"], ...[8, 10, 12, 14, 16, 18, 20, 24, 32].map((bits) => [bits, `after ${2 ** bits}`])]);
+// Items of lists: [value, what is shown].
+const SIDES = [["motor", "motor's side"], ["joint", "joint's side"]];
+const DIRECTIONS = [["same", "as q"], ["opposite", "opposite to q"]];
+const BITS = [8, 10, 12, 14, 16, 18, 20, 24, 32]; // of counters
+const COUNTERS = [["never", "never"], ...BITS.map((bits) => [bits, `after ${2 ** bits}`])];
 
 /**
  * The values of a column as a signal: zero at `zero`, in rad, N.m or s; theta and q at the joint,
@@ -57,14 +58,23 @@ const COUNTERS = Object.fromEntries(
  * choice: { unit, per, counter, side, direction, zero }; gear: turns of the motor per turn of the joint
  */
 function converted(values, name, { unit, per, counter, side, direction, zero }, gear) {
-  const signal = SIGNALS[name];
-  const { factor, per: what } = signal.units[unit];
+  const { factor, per: what } = SIGNALS[name].units[unit];
   if (what && !(per > 0)) throw new Error(`${name}: expected a number above 0 for ${what}, got ${per}`);
   const steady = unit === "counts" && counter !== "never" ? unwrapped(values, 2 ** counter) : values;
-  const ratio = signal.behind && signal.behind === side ? gear : 1;
+  const ratio = isGeared(name, side) ? gear : 1;
   const sign = direction === "opposite" ? -1 : 1;
   const scale = (sign * (what ? factor(per) : factor)) / ratio;
   return steady.map((value) => (value - zero) * scale);
+}
+
+/** Counts of a position per turn of the joint; 0 if it is not in counts. */
+function resolution(name, { unit, per, side }, gear) {
+  if (unit !== "counts") return 0;
+  return isGeared(name, side) ? per * gear : per;
+}
+
+function isGeared(name, side) {
+  return SIGNALS[name].geared === side;
 }
 
 /** A counter that starts again after a number of counts goes on instead. */
@@ -76,11 +86,10 @@ function unwrapped(values, period) {
   });
 }
 
-/** Throws an error for a column that is chosen for two signals. choices: { column } by signal */
-function checkColumns(choices) {
+/** Throws an error for a column that is chosen for two signals. chosen: { column } by signal */
+function checkColumns(chosen) {
   const signals = new Map();
-  for (const [name, { column }] of Object.entries(choices)) {
-    if (column === NO_COLUMN) continue;
+  for (const [name, { column }] of Object.entries(chosen)) {
     if (signals.has(column)) throw new Error(
       `${signals.get(column)} and ${name} have the same column, ${column}: choose another one for one of them`);
     signals.set(column, name);
