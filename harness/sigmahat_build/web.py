@@ -1,4 +1,4 @@
-"""The page of ``docs/live``: plant and estimator as WebAssembly, their variables, and the page.
+"""The page of ``docs/web``: plant and estimator as WebAssembly, their variables, and the page.
 
 The plant is an FMU, compiled from the sources in it. The estimator is the C library, with the
 functions of ``harness/native/joints.h`` that the Python package calls too. The binaries call

@@ -10,11 +10,11 @@ import pytest
 from selenium.webdriver.common.keys import Keys
 
 import sigmahat
-from live_page import LivePage, csv, live_page
 from recorded_logs import Array, awas_log
 from sigmahat import guess
 from sigmahat.files import toml_file
 from sigmahat.fmi.instance import Value
+from web_page import WebPage, csv, web_page
 
 KNEE_FILE = Path(__file__).parents[2] / "examples" / "tutorial" / "knee.csv"
 KNEE = KNEE_FILE.read_text(encoding="utf-8")
@@ -55,20 +55,20 @@ def good() -> dict[str, Array]:
 
 
 @pytest.fixture(scope="module")
-def page(site: Path) -> Iterator[LivePage]:
-    with live_page(site / "live") as page:
+def page(site: Path) -> Iterator[WebPage]:
+    with web_page(site / "web") as page:
         yield page
         assert page.page.complaints() == []
         assert all(url.startswith("file:") for url in page.page.requests())
 
 
-def parameters(page: LivePage) -> dict[str, Value]:
+def parameters(page: WebPage) -> dict[str, Value]:
     """Data that the page gives to the estimator, in the form for `sigmahat.Estimator`."""
     start = dict(page.page.run("return log.starts(log.read())"))
     return {**start, "method": "FilteredRegression", "modality": "Residual"}
 
 
-def test_the_log_of_the_tutorial(page: LivePage) -> None:
+def test_the_log_of_the_tutorial(page: WebPage) -> None:
     assert page.drops(KNEE, "knee.csv") == ""
     assert page.estimates(KNEE_FIELDS) == ""
     found = page.columns_of_run(["sigma", "sigma_std"])
@@ -97,7 +97,7 @@ def test_the_log_of_the_tutorial(page: LivePage) -> None:
     assert f"the estimator was confident {100 * np.mean(half):.3g} % of" in page.text("answer")
 
 
-def test_a_negative_stiffness_is_not_confident_and_is_drawn(page: LivePage) -> None:
+def test_a_negative_stiffness_is_not_confident_and_is_drawn(page: WebPage) -> None:
     assert page.drops(KNEE, "knee.csv") == ""
     assert page.estimates({**KNEE_FIELDS, "tau direction": "opposite"}) == ""
     value, rest = page.text("answer").removeprefix("Stiffness, with 95 % band: ").split(" ", 1)
@@ -109,7 +109,7 @@ def test_a_negative_stiffness_is_not_confident_and_is_drawn(page: LivePage) -> N
     assert low < np.min(sigma[len(sigma) // 2 :]) and high >= 0
 
 
-def test_a_value_has_the_decimals_of_its_band(page: LivePage) -> None:
+def test_a_value_has_the_decimals_of_its_band(page: WebPage) -> None:
     for value, half, expected in (
         (303.456, 12.9, "303.5 ± 12.9"),
         (-13.94, 5.474, "-13.94 ± 5.47"),
@@ -122,7 +122,7 @@ def test_a_value_has_the_decimals_of_its_band(page: LivePage) -> None:
         assert found.replace("\N{MINUS SIGN}", "-") == expected
 
 
-def test_an_answer_is_one_to_the_settings_that_are_shown(page: LivePage) -> None:
+def test_an_answer_is_one_to_the_settings_that_are_shown(page: WebPage) -> None:
     for change in ({"motor.B": 1e-5}, {"q unit": "deg"}, {"theta column": "time_s"}):
         assert page.drops(KNEE, "knee.csv") == "" and page.text("answer") == ""
         assert page.estimates(KNEE_FIELDS) == "" and page.text("answer") != ""
@@ -130,7 +130,7 @@ def test_an_answer_is_one_to_the_settings_that_are_shown(page: LivePage) -> None
         assert page.text("answer") == "", change
 
 
-def test_parameters_of_one_file_are_not_those_of_the_next(page: LivePage) -> None:
+def test_parameters_of_one_file_are_not_those_of_the_next(page: WebPage) -> None:
     shown = []
     for _ in range(2):
         assert page.drops(KNEE, "knee.csv") == ""
@@ -139,7 +139,7 @@ def test_parameters_of_one_file_are_not_those_of_the_next(page: LivePage) -> Non
     assert shown[0] == shown[1]
 
 
-def test_a_log_with_a_motor_that_sets_the_stiffness(page: LivePage) -> None:
+def test_a_log_with_a_motor_that_sets_the_stiffness(page: WebPage) -> None:
     columns = awas_log(0.4, 0.3)
     assert page.drops(csv(columns)) == ""
     setting = {"theta_c column": "theta_c", "theta_c unit": "rad"}
@@ -161,7 +161,7 @@ def test_a_log_with_a_motor_that_sets_the_stiffness(page: LivePage) -> None:
         assert np.all(np.abs(found - true) < 3 * std)
 
 
-def test_decimal_commas_quotes_and_units(page: LivePage) -> None:
+def test_decimal_commas_quotes_and_units(page: WebPage) -> None:
     t = 0.001 * np.arange(200)
     lines = ["Zeit_ms;Motor_Winkel_deg;Abtrieb_Winkel_deg;Drehmoment_mNm"]
     lines += [f'{1000 * x:g};"{x:.6f}";{2 * x:.6f};{50 * x:.6f}'.replace(".", ",") for x in t]
@@ -179,7 +179,7 @@ def test_decimal_commas_quotes_and_units(page: LivePage) -> None:
 
 
 @pytest.mark.parametrize("above", ["sep=;\r\n", "# of today; by me\n#\n\n", "sep=;\n# of today\n"])
-def test_lines_above_the_names_are_skipped(above: str, page: LivePage) -> None:
+def test_lines_above_the_names_are_skipped(above: str, page: WebPage) -> None:
     rows = "".join(f"{k};0,5;1;2\n" for k in range(200))
     assert page.drops(f"{above}t;theta;q;tau\n{rows}") == ""
     assert page.text("log-name") == "log.csv: 200 rows"
@@ -187,7 +187,7 @@ def test_lines_above_the_names_are_skipped(above: str, page: LivePage) -> None:
     assert found["theta"].tolist() == [0.5] * 200
 
 
-def test_names_behind_a_hash_as_numpy_writes_them(page: LivePage) -> None:
+def test_names_behind_a_hash_as_numpy_writes_them(page: WebPage) -> None:
     text = io.StringIO()
     np.savetxt(text, np.ones((200, 4)), header="of today\nt\ttheta\tq\ttau", delimiter="\t")
     assert page.drops(text.getvalue().replace(".", ",")) == ""
@@ -195,13 +195,13 @@ def test_names_behind_a_hash_as_numpy_writes_them(page: LivePage) -> None:
     assert page.arrays("return { q: log.table.column('q') }")["q"].tolist() == [1.0] * 200
 
 
-def test_the_page_has_every_unit_that_names_tell(page: LivePage) -> None:
+def test_the_page_has_every_unit_that_names_tell(page: WebPage) -> None:
     words = toml_file.read(Path(guess.__file__).with_name("vocabulary.toml")).unwrap()
     script = "return Object.values(SIGNALS).flatMap(({ units }) => Object.keys(units))"
     assert set(words["unit"]) <= set(page.page.run(script))
 
 
-def test_the_sides_of_the_gear_and_the_directions(page: LivePage) -> None:
+def test_the_sides_of_the_gear_and_the_directions(page: WebPage) -> None:
     """The encoder may be behind the gear, and the torque before it, or the other way round."""
     assert page.drops(csv(good())) == ""
     script = "const { signals } = log.read(); return signals"
@@ -220,7 +220,7 @@ def test_the_sides_of_the_gear_and_the_directions(page: LivePage) -> None:
             np.testing.assert_allclose(found["q"], good()["q"], rtol=1e-12)
 
 
-def test_nothing_is_guessed_and_what_is_missing_is_said(page: LivePage) -> None:
+def test_nothing_is_guessed_and_what_is_missing_is_said(page: WebPage) -> None:
     missing = (
         "Still missing: gear (ratio), time (column, unit), "
         "theta (column, unit, side of the gear, direction), q (column, unit), "
@@ -240,7 +240,7 @@ def test_nothing_is_guessed_and_what_is_missing_is_said(page: LivePage) -> None:
     assert page.text("missing") == ""
 
 
-def test_every_field_has_a_label_and_a_place_for_the_keyboard(page: LivePage) -> None:
+def test_every_field_has_a_label_and_a_place_for_the_keyboard(page: WebPage) -> None:
     assert page.drops(KNEE, "knee.csv") == ""
     page.fills(KNEE_FIELDS)
     without = """
@@ -285,18 +285,18 @@ NAMES, ROWS = "t,theta,q,tau\n", "1,2,3,4\n" * 200
     ],
     ids=lambda text: text[:9],
 )
-def test_a_bad_file_is_refused_in_one_line(text: str, expected: str, page: LivePage) -> None:
+def test_a_bad_file_is_refused_in_one_line(text: str, expected: str, page: WebPage) -> None:
     message = page.drops(text)
     assert message.startswith("log.csv: ") and "\n" not in message
     assert re.search(expected, message), message
 
 
-def test_a_huge_file_is_refused_before_it_is_read(page: LivePage) -> None:
+def test_a_huge_file_is_refused_before_it_is_read(page: WebPage) -> None:
     script = "try { checkSize({ size: 3e9 }); } catch (error) { return error.message; }"
     assert page.page.run(script).startswith("expected at most 100 MB, the file has 3000 MB")
 
 
-def test_a_bad_column_is_named(page: LivePage) -> None:
+def test_a_bad_column_is_named(page: WebPage) -> None:
     t, tau = good()["time"], good()["tau"]
     hole, uneven = np.where(t == t[50], np.nan, tau), np.where(t == t[70], 0.0712, t)
     steps = "expected steps of about 0.001 s as in the mean, got 0.0022 s in row 72;"
@@ -351,12 +351,12 @@ def test_a_bad_column_is_named(page: LivePage) -> None:
     ],
     ids=lambda value: "-".join(value) if isinstance(value, dict) else "",
 )
-def test_a_bad_field_is_named(fields: dict[str, object], expected: str, page: LivePage) -> None:
+def test_a_bad_field_is_named(fields: dict[str, object], expected: str, page: WebPage) -> None:
     assert page.drops(csv(good())) == ""
     assert expected in page.estimates({**FIELDS, **fields})
 
 
-def test_what_comes_from_the_log_is_called_so(page: LivePage) -> None:
+def test_what_comes_from_the_log_is_called_so(page: WebPage) -> None:
     assert page.drops(csv({**good(), "q": 1e9 * good()["tau"]})) == ""
     assert page.estimates(FIELDS).endswith("or fill it in.")
     assert "from the log" not in page.estimates({"range.phi": 1e9})

@@ -33,7 +33,7 @@ def csv(columns: Mapping[str, NDArray[np.float64]]) -> str:
     return text.getvalue().decode()
 
 
-class LivePage:
+class WebPage:
     """The page, as soon as the binaries are compiled; its time stands still until `runs(True)`."""
 
     def __init__(self, page: Page) -> None:
@@ -95,7 +95,7 @@ class LivePage:
 
 
 @contextmanager
-def live_page(folder: Path, width: int = 1400, dark: bool = False) -> Iterator[LivePage]:
+def web_page(folder: Path, width: int = 1400, dark: bool = False) -> Iterator[WebPage]:
     """Opens the page from its folder, without a server."""
     with opened(folder / "index.html", width, dark) as page:
-        yield LivePage(page)
+        yield WebPage(page)
