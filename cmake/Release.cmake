@@ -1,7 +1,7 @@
 # The target release writes all FMUs and the system to release/, with binaries for all platforms. It also
 # writes a wheel for each platform and the source distribution to release/python/.
 #
-# The cross compiler is a large download, so only the targets release and live install it.
+# The cross compiler is a large download, so only the targets release and web install it.
 sigmahat_add_packages(release)
 
 foreach(fmi 2 3)

@@ -47,7 +47,7 @@ html_theme_options = {
     "footer_end": [],
 }
 html_context = {"default_mode": "auto"}  # light or dark, as in the system
-html_sidebars: dict[str, list[str]] = {"index": [], "live": []}
+html_sidebars: dict[str, list[str]] = {"index": [], "web": []}
 copyright = "sigmahat, BSD-2-Clause"
 html_static_path = ["static"]
 html_css_files = ["site.css"]

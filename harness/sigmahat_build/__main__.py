@@ -15,7 +15,7 @@ _STEPS = {
     "release": "cross_compiler.release fmu out --cache",
     "distribute": "distribution.write out contents... --project --sources... --includes... --cache",
     "bill": "bill.write out release --version",
-    "live": "web.write out fmus... --page --cache",
+    "web": "web.write out plant estimator --page --sources... --includes... --cache",
     "amalgamate": "amalgamation.write out sources... --interface --licence --version",
     "parameters": "parameter_table.write template out",
     "modelica": "modelica.write out library sources... --descriptions --licence --version",

@@ -1,9 +1,8 @@
-"""Estimates by the protocol of Foxglove: a client of the tests, and the page in the browser."""
+"""Estimates by the protocol of Foxglove, for a client of the tests."""
 
 import json
 import struct
 import subprocess
-import time
 from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any
@@ -11,7 +10,6 @@ from typing import Any
 import pytest
 from websocket import ABNF, WebSocket, create_connection
 
-from browser import opened
 from sender import csv, ended, free_port, messages, of_joints, running
 
 pytest.importorskip("foxglove")
@@ -76,39 +74,3 @@ def test_a_client_receives_channels_and_samples(tmp_path: Path) -> None:
     layout = json.loads((tmp_path / "out" / "foxglove-layout.json").read_text())
     assert [tab["title"] for tab in layout["content"]["tabs"]] == ["elbow", "wrist"]
     assert '"/elbow/estimate.sigma_low"' in json.dumps(layout)
-
-
-@pytest.mark.slow("a browser watches a log at its own pace")
-def test_the_page_in_the_browser_watches(site: Path, tmp_path: Path) -> None:
-    port = free_port()
-    address = f"{(site / 'live' / 'index.html').as_uri()}?ws=ws://127.0.0.1:{port}"
-    with replayed(tmp_path, 20_000, port), opened(address) as page:
-        watched = page.driver.find_element("id", "watched-sigma")
-        page.until(lambda: "±" in watched.text and page.run("return watch.last.confident"))
-        sigma, _, rest = watched.text.partition(" ± ")
-        assert float(sigma) == pytest.approx(400, rel=0.1)
-        assert rest.endswith("N·m/rad")
-        options = page.run("return [...watch.field.options].map((each) => each.value)")
-        assert options == ["elbow", "wrist"]
-        page.run("watch.field.value = 'wrist'; watch.field.dispatchEvent(new Event('change'))")
-        time.sleep(1)
-        assert page.run("return watch.history.get('t').length") > 100
-        assert page.complaints() == []
-        policy = "return document.querySelector('meta[http-equiv]').content"
-        assert f"connect-src ws://127.0.0.1:{port};" in page.run(policy)
-
-
-REFUSED = """
-const done = arguments[0];
-document.addEventListener("securitypolicyviolation", (event) => done(event.effectiveDirective));
-fetch("http://127.0.0.1:9/").catch(() => {});
-"""
-"""Message of the browser after an attempt to send something."""
-
-
-@pytest.mark.parametrize("asked", ["?ws=http://127.0.0.1:1", "?ws=nothing", "?ws=", ""])
-def test_the_page_reaches_no_other_address(asked: str, site: Path) -> None:
-    with opened((site / "live" / "index.html").as_uri() + asked) as page:
-        said = page.driver.find_element("id", "watch-message").text
-        assert ("?ws=ws://127.0.0.1:8765" in said) == bool(asked)
-        assert page.driver.execute_async_script(REFUSED) == "connect-src"

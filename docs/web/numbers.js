@@ -27,7 +27,7 @@ function printed(text) {
   return text.replaceAll("-", "−").replace("e+", "e");
 }
 
-const DOUBT = FMUS.StiffnessEstimator.variables.doubt.items, NO_DOUBT = DOUBT.None;
+const DOUBT = ESTIMATOR.variables.doubt.items, NO_DOUBT = DOUBT.None;
 
 /** In words, of a value of the output doubt. */
 function confidence(doubt) {

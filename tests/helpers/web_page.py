@@ -1,4 +1,4 @@
-"""Actions of a user on the page that runs the FMUs in the browser."""
+"""Actions of a user on the page that runs plant and estimator in the browser."""
 
 import io
 from collections.abc import Iterator, Mapping, Sequence
@@ -33,8 +33,8 @@ def csv(columns: Mapping[str, NDArray[np.float64]]) -> str:
     return text.getvalue().decode()
 
 
-class LivePage:
-    """The page, as soon as the FMUs are compiled; its time stands still until `runs(True)`."""
+class WebPage:
+    """The page, as soon as the binaries are compiled; its time stands still until `runs(True)`."""
 
     def __init__(self, page: Page) -> None:
         self.page = page
@@ -78,11 +78,16 @@ class LivePage:
         self.page.run(_FILL, fields)
 
     def estimates(self, fields: Mapping[str, object]) -> str:
-        """Fills in the fields for the log, starts the estimation, and returns the error message."""
+        """Fills in the fields for the log, and starts the estimation. Returns the error message, or
+        what is missing.
+        """
         self.fills(fields)
         self.page.run("log.form.requestSubmit()")
-        self.page.until(lambda: self.text("log-message") or self.text("answer"))
-        return self.text("log-message")
+        self.page.until(lambda: self.refusal() or self.text("answer"))
+        return self.refusal()
+
+    def refusal(self) -> str:
+        return self.text("missing") or self.text("log-message")
 
     def columns_of_run(self, names: Sequence[str]) -> dict[str, NDArray[np.float64]]:
         script = "return Object.fromEntries(given[0].map((n) => [n, log.run.columns[n]]))"
@@ -90,7 +95,7 @@ class LivePage:
 
 
 @contextmanager
-def live_page(folder: Path, width: int = 1400, dark: bool = False) -> Iterator[LivePage]:
+def web_page(folder: Path, width: int = 1400, dark: bool = False) -> Iterator[WebPage]:
     """Opens the page from its folder, without a server."""
     with opened(folder / "index.html", width, dark) as page:
-        yield LivePage(page)
+        yield WebPage(page)

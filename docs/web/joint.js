@@ -5,7 +5,7 @@ const SECONDS = SCENARIO.duration; // shown
 const NORMAL_95 = 1.96; // half the width of an interval of 95 % over the standard deviation
 const SHOWN = {
   plant: ["sigma", "tau_e"],
-  estimator: ["sigma", "tau_e", "sigma_std"],
+  estimator: ["sigma", "tau_e", "sigma_std", "doubt"],
 };
 // Of the noise of the paper: the estimator is told no less, since it has to be told some.
 const LEAST_NOISE = 1 / 20;
@@ -16,8 +16,7 @@ const joint = {
   running: false,
 
   async open() {
-    [this.plant, this.estimator] =
-      await Promise.all(["AwasPlant", "StiffnessEstimator"].map(compiled));
+    [this.plant, this.estimator] = await Promise.all([PLANT, ESTIMATOR].map(compiled));
     this.plots = ["stiffness", "torque"].map((id) => new Plot(id));
     const { items } = this.estimator.variables.method;
     this.form.elements.method.append(
@@ -98,11 +97,11 @@ const joint = {
     let made = 0;
     try {
       while (this.simulation && made < samples && performance.now() - begin < most) {
-        const { recorded } = this.simulation, t = this.simulation.time;
-        this.simulation.advance();
-        const [estimate, torque, std] = recorded.estimator.values;
+        const t = this.simulation.time;
+        const { plant, estimator: [estimate, torque, std, doubt] } = this.simulation.advance();
         const claims = this.simulation.start.estimator.method === METHODS.FilteredRegression;
-        this.history.push(t, ...recorded.plant.values, estimate, torque, claims ? NORMAL_95 * std : NaN);
+        this.history.push(t, ...plant, estimate, torque, claims ? NORMAL_95 * std : NaN);
+        this.doubt = doubt;
         made += 1;
       }
     } catch (error) {
@@ -139,11 +138,11 @@ const joint = {
     say("value-true", `${truth.toFixed(1)} N·m/rad`);
     say("value-sigma", `${withBand(estimate, half.at(-1))} N·m/rad`);
     say("value-error", `${shortly((100 * (estimate - truth)) / truth)} %`);
-    say("value-doubt", confidence(this.simulation.doubt.values[0]));
+    say("value-doubt", confidence(this.doubt));
   },
 };
 
-const METHODS = FMUS.StiffnessEstimator.variables.method.items;
+const METHODS = ESTIMATOR.variables.method.items;
 
 function say(id, text) {
   document.getElementById(id).textContent = text;

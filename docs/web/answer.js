@@ -10,15 +10,15 @@ const answer = {
 
   /** Of a LogEstimate that has run. */
   show(run) {
-    const { sigma, sigma_std: std } = run.columns, warning = run.fmu.warnings[0];
-    const curves = run.curves(); // for which samples have to be missing: warnings that are no news
+    const { sigma, sigma_std: std } = run.columns;
+    const curves = run.curves();
     const t = sigma.map((_, k) => k * run.T);
     document.getElementById("result").hidden = false;
-    say("answer", inWords(run, curves, warning));
+    say("answer", inWords(run, curves));
     document.getElementById("answer").scrollIntoView({ block: "nearest" });
     const drawn = (x, y, deviations, color) => ({ x, y, half: deviations.map((each) => NORMAL_95 * each), color });
-    const stiffness = curves.map((curve, i) => drawn(curve.phi, curve.sigma, curve.std, COLORS[i]));
-    const torque = curves.map((curve, i) => drawn(curve.phi, curve.torque, curve.torqueStd, COLORS[i]));
+    const stiffness = curves.map((curve, i) => drawn(curve.phi, curve.sigma, curve.sigma_std, COLORS[i]));
+    const torque = curves.map((curve, i) => drawn(curve.phi, curve.tau_e, curve.tau_e_std, COLORS[i]));
     const [overTime, ...overDeformation] = this.plots, several = curves.length > 1 ? curves : [];
     overTime.draw({ x: range(t), y: reach(stiffness, sigma), curves: [drawn(t, sigma, std, "estimate")] });
     overDeformation.forEach((plot, place) => {
@@ -38,16 +38,19 @@ function reach(curves, sigma) {
   return [least < 0 ? bottom : 0, most > 0 ? top : 0];
 }
 
-function inWords(run, curves, warning) {
-  const values = curves.map(({ phi, sigma, std, doubt, setPoint }) => {
+function inWords(run, curves) {
+  const values = curves.map(({ phi, sigma, sigma_std: std, setPoint }) => {
     const i = phi.reduce((best, value, k) => (Math.abs(value) < Math.abs(phi[best]) ? k : best), 0); // next to 0
     const where = curves.length > 1 ? ` at set-point ${shortly(setPoint)}` : "";
-    return `${withBand(sigma[i], NORMAL_95 * std[i])} N·m/rad at ${threeDigits(phi[i])} rad${where} (${confidence(doubt[i])})`;
+    return `${withBand(sigma[i], NORMAL_95 * std[i])} N·m/rad at ${threeDigits(phi[i])} rad${where}`;
   });
-  const found = shares(run.columns.doubt), percent = (share) => `${threeDigits(100 * share)} %`;
+  const { doubt, valid } = run.columns;
+  const found = shares(doubt), percent = (share) => `${threeDigits(100 * share)} %`;
   const sure = found.find(([value]) => value === NO_DOUBT)?.[1] ?? 0;
   const reasons = found.filter(([value]) => value !== NO_DOUBT)
     .map(([value, share]) => `${reason(value)}: ${percent(share)}`);
-  return `Stiffness, with 95 % band: ${values.join("; ")}. In the second half of the log the estimator was confident `
-    + `${percent(sure)} of the time${reasons.length ? ` (${reasons.join(", ")})` : ""}.${warning ? ` ${warning}` : ""}`;
+  const skipped = valid.filter((each) => !each).length;
+  return `Stiffness, with 95 % band: ${values.join("; ")} (${confidence(doubt.at(-1))}). In the second half of the log the `
+    + `estimator was confident ${percent(sure)} of the time${reasons.length ? ` (${reasons.join(", ")})` : ""}.`
+    + (skipped ? ` It skipped ${skipped} rows, whose numbers are too large.` : "");
 }

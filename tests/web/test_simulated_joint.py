@@ -12,9 +12,10 @@ import pytest
 from selenium.webdriver.common.keys import Keys
 
 import sigmahat
-from live_page import LivePage, live_page
+from browser import opened
 from sigmahat.experiments.simulation import run
 from sigmahat.paper.scenarios import scenario
+from web_page import WebPage, web_page
 
 _DRAWN = """
 const canvas = document.getElementById(arguments[0]), color = getComputedStyle(
@@ -41,21 +42,21 @@ const found = {};
 for (const [of, names] of Object.entries(record))
   for (const name of names) found[`${of} ${name}`] = new Float64Array(count);
 for (let k = 0; k < count; k += 1) {
-  simulation.advance();
+  const values = simulation.advance();
   for (const [of, names] of Object.entries(record))
-    names.forEach((name, i) => { found[`${of} ${name}`][k] = simulation.recorded[of].values[i]; });
+    names.forEach((name, i) => { found[`${of} ${name}`][k] = values[of][i]; });
 }
 return found;
 """
 
 
 @pytest.fixture(scope="module")
-def page(site: Path) -> Iterator[LivePage]:
-    with live_page(site / "live") as page:
+def page(site: Path) -> Iterator[WebPage]:
+    with web_page(site / "web") as page:
         yield page
 
 
-def simulate(page: LivePage, seconds: float) -> None:
+def simulate(page: WebPage, seconds: float) -> None:
     """Lets simulated time pass at once."""
     steps = "arguments[0] / SCENARIO.T"
     page.page.run(f"joint.start(); joint.advance({steps}, Infinity); joint.show()", seconds)
@@ -67,7 +68,7 @@ def outputs(fmu: str) -> list[str]:
 
 
 @pytest.mark.parametrize("method", ["Paper2011", "FilteredRegression"])
-def test_table1_in_the_browser_is_that_of_the_fmus(method: str, page: LivePage) -> None:
+def test_table1_in_the_browser_is_that_of_the_fmus(method: str, page: WebPage) -> None:
     """The plant makes its torques itself, by the settings that the page opens with."""
     plant, estimator = outputs("AwasPlant"), outputs("StiffnessEstimator")
     table1 = scenario("table1")
@@ -85,7 +86,7 @@ def test_table1_in_the_browser_is_that_of_the_fmus(method: str, page: LivePage) 
     assert {name: d for name, d in differences.items() if d[0] > WITHIN * d[1]} == {}
 
 
-def test_time_passes_pauses_and_starts_again(page: LivePage) -> None:
+def test_time_passes_pauses_and_starts_again(page: WebPage) -> None:
     page.sets("speed", "10")
     button = page.page.driver.find_element("id", "run")
     simulate(page, 15)
@@ -103,7 +104,7 @@ def test_time_passes_pauses_and_starts_again(page: LivePage) -> None:
     page.sets("coulomb", 0)
 
 
-def test_wrong_friction_misleads_paper2011_and_not_filtered_regression(page: LivePage) -> None:
+def test_wrong_friction_misleads_paper2011_and_not_filtered_regression(page: WebPage) -> None:
     """Only the method with an interval has a band in the plot."""
     errors = {}
     for method, claims in (("Paper2011", False), ("FilteredRegression", True)):
@@ -119,7 +120,7 @@ def test_wrong_friction_misleads_paper2011_and_not_filtered_regression(page: Liv
     assert max(errors["Paper2011", 0], errors["FilteredRegression", 0]) < 5
 
 
-def test_the_band_holds_without_noise(page: LivePage) -> None:
+def test_the_band_holds_without_noise(page: WebPage) -> None:
     """The estimator assumes almost no noise; it once assumed the noise of the paper."""
     page.page.run("joint.form.elements.method.value = METHODS.FilteredRegression")
     for noise in (0, 1):
@@ -132,25 +133,44 @@ def test_the_band_holds_without_noise(page: LivePage) -> None:
         assert page.text("value-doubt") == "confident"
 
 
-def test_what_an_fmu_refuses_is_shown_in_its_own_words(page: LivePage) -> None:
-    page.page.run("joint.form.elements.friction.min = -200")
+def test_what_plant_and_estimator_refuse_is_shown_in_their_own_words(page: WebPage) -> None:
+    fields = "const { coulomb, friction } = joint.form.elements;"
+    page.page.run(f"{fields} friction.min = -200; coulomb.min = -5")
     page.sets("friction", -150)
-    assert "motor.D_theta = -0.0005" in page.text("joint-message")
+    assert "motor.D_theta: expected >= 0, got -0.0005" in page.text("joint-message")
     page.sets("friction", 0)
     assert page.text("joint-message") == ""
+    page.sets("coulomb", -5)
+    assert "motor.tau_coulomb = -0.005" in page.text("joint-message")
+    page.sets("coulomb", 0)
+    assert page.text("joint-message") == ""
+
+
+REFUSED = """
+const done = arguments[0];
+document.addEventListener("securitypolicyviolation", (event) => done(event.effectiveDirective));
+fetch("http://127.0.0.1:9/").catch(() => {});
+"""
+"""Message of the browser after an attempt to send something."""
+
+
+@pytest.mark.parametrize("asked", ["?ws=ws://127.0.0.1:8765", ""])
+def test_the_page_reaches_no_address(asked: str, site: Path) -> None:
+    with opened((site / "web" / "index.html").as_uri() + asked) as page:
+        assert page.driver.execute_async_script(REFUSED) == "connect-src"
 
 
 @pytest.mark.parametrize(("width", "dark"), [(1400, False), (360, True)], ids=["desk", "phone"])
 def test_it_fits_the_window_without_a_complaint(width: int, dark: bool, site: Path) -> None:
-    with live_page(site / "live", width, dark) as live:
-        simulate(live, 10)
-        live.runs(True)
+    with web_page(site / "web", width, dark) as web:
+        simulate(web, 10)
+        web.runs(True)
         time.sleep(0.2)
-        shown = live.page.run("return getComputedStyle(document.body).backgroundColor")
+        shown = web.page.run("return getComputedStyle(document.body).backgroundColor")
         brightness = sum(map(int, re.findall(r"\d+", shown)[:3])) / 3
         assert brightness < 64 if dark else brightness > 192
-        assert live.page.run("return document.documentElement.scrollWidth") <= width
+        assert web.page.run("return document.documentElement.scrollWidth") <= width
         for drawn in (["stiffness", "true"], ["stiffness", "estimate"], ["torque", "estimate"]):
-            assert live.page.run(_DRAWN, *drawn) > 100, drawn
-        assert live.page.complaints() == []
-        assert all(url.startswith("file:") for url in live.page.requests())
+            assert web.page.run(_DRAWN, *drawn) > 100, drawn
+        assert web.page.complaints() == []
+        assert all(url.startswith("file:") for url in web.page.requests())
