@@ -1,8 +1,9 @@
 /* An instance of the FMU, and access to the values of its variables.
  *
- * The shell is the same for every version of FMI. The FMI functions in fmi2/ and fmi3/ only translate arguments and
- * status. The argument `function` of a function of the shell is the name of an FMI function, with which all messages
- * begin.
+ * The shell is the same for every version of FMI. The functions of FMI in fmi2/ and fmi3/ only translate arguments and
+ * status for creation.h, simulation.h, access.h and saved_state.h. A call first passes guards.h, which refuses a wrong
+ * call with a message of log.h. The argument `function` of a function of the shell is the name of the function of FMI,
+ * with which all messages begin.
  */
 #ifndef SH_INSTANCE_H
 #define SH_INSTANCE_H
