@@ -1,42 +1,26 @@
-/* Functions of FMI 2.0 for inquiry, logging, creation, simulation, and the state of the FMU. */
+/* Functions of FMI 2.0 for logging, creation, simulation, and the state of the FMU. */
 #include <math.h>
 
+#include "creation.h"
 #include "fmi2Functions.h"
+#include "guards.h"
 #include "log.h"
+#include "saved_state.h"
 #include "simulation.h"
-
-const char *fmi2GetTypesPlatform(void)
-{
-    return fmi2TypesPlatform;
-}
-
-const char *fmi2GetVersion(void)
-{
-    return fmi2Version;
-}
-
-/* The logger of FMI 2.0 takes a message as a printf format, so sh_report doubles each % in a message. */
-const char sh_special = '%';
-
-void sh_deliver(const sh_instance *instance, sh_status status, const char *category,
-                const char *text)
-{
-    const fmi2CallbackLogger logger = (fmi2CallbackLogger)instance->importer.logger;
-
-    logger(instance->importer.environment, instance->name, (fmi2Status)status, category, text);
-}
 
 fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean loggingOn, size_t nCategories,
                                const fmi2String categories[])
 {
-    sh_instance *instance = c;
+    static const char function[] = "fmi2SetDebugLogging";
+    sh_instance *instance = sh_enter(c, SH_ANY, function);
     unsigned found = 0;
-    const sh_status status =
-        sh_find_categories(c, nCategories, categories, &found, "fmi2SetDebugLogging");
+    sh_status status;
 
-    if (status > SH_WARNING) {
+    if (instance == NULL ||
+        (nCategories > 0 && !sh_has(instance, categories, function, "categories"))) {
         return fmi2Error;
     }
+    status = sh_find_categories(instance, nCategories, categories, &found, function);
     if (!loggingOn) {
         instance->categories = SH_LOG_STATUS; /* all but debug messages */
     } else if (found != 0) {

@@ -1,6 +1,6 @@
 /* Functions of FMI 2.0 for features that the FMUs of this project do not have; compare fmi3/refused.c. */
 #include "fmi2Functions.h"
-#include "simulation.h"
+#include "guards.h"
 
 #ifdef __GNUC__
 #pragma GCC diagnostic ignored "-Wunused-parameter" /* only the instance is used */

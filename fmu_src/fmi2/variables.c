@@ -1,18 +1,7 @@
 /* Functions of FMI 2.0 that read and write variables. */
 #include "access.h"
 #include "fmi2Functions.h"
-
-const char *sh_type_name(sh_type type)
-{
-    switch (type) {
-    case SH_TYPE_REAL:
-        return "Real";
-    case SH_TYPE_BOOLEAN:
-        return "Boolean";
-    default:
-        return "Integer or Enumeration";
-    }
-}
+#include "guards.h"
 
 /* Describes a call of the importer that passes one value for each value reference. */
 #define CALL(function, types, type_of_values)                                                      \

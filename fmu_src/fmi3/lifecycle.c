@@ -1,37 +1,26 @@
-/* Functions of FMI 3.0 for inquiry, logging, creation, simulation, and the state of the FMU. */
+/* Functions of FMI 3.0 for logging, creation, simulation, and the state of the FMU. */
 #include <math.h>
 
+#include "creation.h"
 #include "fmi3Functions.h"
+#include "guards.h"
 #include "log.h"
+#include "saved_state.h"
 #include "simulation.h"
-
-const char *fmi3GetVersion(void)
-{
-    return fmi3Version;
-}
-
-/* In a message of FMI 3.0, #7# means the value of variable 7, so sh_report doubles each # in a message. */
-const char sh_special = '#';
-
-void sh_deliver(const sh_instance *instance, sh_status status, const char *category,
-                const char *text)
-{
-    const fmi3LogMessageCallback logger = (fmi3LogMessageCallback)instance->importer.logger;
-
-    logger(instance->importer.environment, (fmi3Status)status, category, text);
-}
 
 fmi3Status fmi3SetDebugLogging(fmi3Instance instance, fmi3Boolean loggingOn, size_t nCategories,
                                const fmi3String categories[])
 {
-    sh_instance *entered = instance;
+    static const char function[] = "fmi3SetDebugLogging";
+    sh_instance *entered = sh_enter(instance, SH_ANY, function);
     unsigned found = 0;
-    const sh_status status =
-        sh_find_categories(instance, nCategories, categories, &found, "fmi3SetDebugLogging");
+    sh_status status;
 
-    if (status > SH_WARNING) {
+    if (entered == NULL ||
+        (nCategories > 0 && !sh_has(entered, categories, function, "categories"))) {
         return fmi3Error;
     }
+    status = sh_find_categories(entered, nCategories, categories, &found, function);
     if (loggingOn) {
         entered->categories |= found;
     } else {

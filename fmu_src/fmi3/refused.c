@@ -1,8 +1,9 @@
 /* Functions of FMI 3.0 for features that the FMUs of this project do not have. FMI demands that such
  * functions exist. Each function in this file fails with a message that names the missing feature.
  */
+#include "creation.h"
 #include "fmi3Functions.h"
-#include "simulation.h"
+#include "guards.h"
 
 #ifdef __GNUC__
 #pragma GCC diagnostic ignored "-Wunused-parameter" /* only the instance is used */
@@ -47,11 +48,6 @@ REFUSED(GetAdjointDerivative, "adjoint derivatives", INSTANCE, const fmi3ValueRe
         const fmi3Float64 seed[], size_t nSeed, fmi3Float64 sensitivity[], size_t nSensitivity)
 REFUSED(GetOutputDerivatives, "derivatives of outputs (maxOutputDerivativeOrder is 0)", REFERENCES,
         const fmi3Int32 orders[], fmi3Float64 values[], size_t nValues)
-
-REFUSED(GetBinary, "variables of type Binary", REFERENCES, size_t valueSizes[], fmi3Binary values[],
-        size_t nValues)
-REFUSED(SetBinary, "variables of type Binary", REFERENCES, const size_t valueSizes[],
-        const fmi3Binary values[], size_t nValues)
 
 REFUSED(GetClock, "clocks", REFERENCES, fmi3Clock values[])
 REFUSED(SetClock, "clocks", REFERENCES, const fmi3Clock values[])

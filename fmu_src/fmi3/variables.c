@@ -2,20 +2,6 @@
 #include "access.h"
 #include "fmi3Functions.h"
 
-const char *sh_type_name(sh_type type)
-{
-    switch (type) {
-    case SH_TYPE_REAL:
-        return "Float64";
-    case SH_TYPE_INTEGER:
-        return "Int32";
-    case SH_TYPE_ENUMERATION:
-        return "an Enumeration (Int64)";
-    default:
-        return "Boolean";
-    }
-}
-
 #define CALL(function, types, type_of_values)                                                      \
     const sh_access access = {instance,        function,         types,  type_of_values, 1,        \
                               valueReferences, nValueReferences, nValues}
@@ -48,3 +34,22 @@ ACCESS(UInt16, 0, SH_BYTES)
 ACCESS(UInt32, 0, SH_BYTES)
 ACCESS(UInt64, 0, SH_BYTES)
 ACCESS(String, 0, SH_BYTES)
+
+/* Nor has any variable the type Binary, whose values have sizes of their own. */
+fmi3Status fmi3GetBinary(fmi3Instance instance, const fmi3ValueReference valueReferences[],
+                         size_t nValueReferences, size_t valueSizes[], fmi3Binary values[],
+                         size_t nValues)
+{
+    CALL("fmi3GetBinary", 0, SH_BYTES);
+    (void)valueSizes;
+    return (fmi3Status)sh_get(&access, (void *)values);
+}
+
+fmi3Status fmi3SetBinary(fmi3Instance instance, const fmi3ValueReference valueReferences[],
+                         size_t nValueReferences, const size_t valueSizes[],
+                         const fmi3Binary values[], size_t nValues)
+{
+    CALL("fmi3SetBinary", 0, SH_BYTES);
+    (void)valueSizes;
+    return (fmi3Status)sh_set(&access, (const void *)values);
+}

@@ -1,22 +1,10 @@
 #include "access.h"
 
-#include <math.h>
 #include <stdbool.h>
 
-int sh_accepts(sh_instance *instance, const sh_variable *variable, double value,
-               const char *function)
-{
-    const double min = variable->min, max = variable->max;
-
-    if (!sh_is_parameter(variable) || (isfinite(value) && value >= min && value <= max)) {
-        return 1;
-    }
-    /* The error message shows the allowed range as "[0, 1]" or "(-inf, inf)". */
-    sh_report(instance, SH_ERROR, "%s: parameter %s = %.9g is out of its range %c%.9g, %.9g%c.",
-              function, variable->name, value, isfinite(min) ? '[' : '(', min, max,
-              isfinite(max) ? ']' : ')');
-    return 0;
-}
+#include "guards.h"
+#include "simulation.h"
+#include "version.h"
 
 /* Returns 1 for the value reference of time, a variable of FMI 3.0. Time follows the references of the table. */
 static int is_time(const sh_access *access, uint32_t reference)

@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-#include "simulation.h"
+#include "instance.h"
 
 /* Type of the elements in the importer's array of values. */
 typedef enum {
@@ -34,8 +34,5 @@ sh_status sh_set(const sh_access *access, const void *values);
 
 /* Returns the instance if all variables of a call can be set to `values` now, else NULL after a message. */
 sh_instance *sh_begin_set(const sh_access *access, const void *values);
-
-/* Returns the name of a type in the current version of FMI, for messages. */
-const char *sh_type_name(sh_type type);
 
 #endif

@@ -1,64 +1,11 @@
-/* Functions that create, reset and free an instance, and that refuse wrong calls with a message. */
+#include "creation.h"
+
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "guards.h"
 #include "log.h"
-#include "simulation.h"
-
-static const char *state_name(sh_state state)
-{
-    switch (state) {
-    case SH_INSTANTIATED:
-        return "before initialisation";
-    case SH_INITIALIZATION:
-        return "in initialisation mode";
-    case SH_STEP:
-        return "between steps";
-    default:
-        return "after termination";
-    }
-}
-
-sh_instance *sh_refuse_call(sh_instance *instance, const char *function)
-{
-    sh_report(instance, SH_ERROR, "%s: not allowed %s.", function, state_name(instance->state));
-    return NULL;
-}
-
-int sh_refuse_null(sh_instance *instance, const char *function, const char *argument)
-{
-    sh_report(instance, SH_ERROR, "%s: argument %s is NULL.", function, argument);
-    return 0;
-}
-
-/* The library that allocated memory must also free it. So allocate and release are used together or not at all. */
-static int importer_allocates(const sh_importer *importer)
-{
-    return importer->allocate != NULL && importer->release != NULL;
-}
-
-void *sh_allocate(const sh_importer *importer, size_t size)
-{
-    void *memory = importer_allocates(importer) ? importer->allocate(1, size) : malloc(size);
-
-    if (memory != NULL) {
-        (void)memset(memory, 0, size);
-    }
-    return memory;
-}
-
-void sh_release(const sh_importer *importer, void *memory)
-{
-    if (memory == NULL) {
-        return;
-    }
-    if (importer_allocates(importer)) {
-        importer->release(memory);
-    } else {
-        free(memory);
-    }
-}
+#include "allocation.h"
 
 /* Returns a temporary instance that can log messages before the real instance exists. */
 static sh_instance nobody(const sh_importer *importer)
@@ -81,15 +28,13 @@ void *sh_refuse_instance(const sh_importer *importer, const char *function, cons
     return NULL;
 }
 
-sh_status sh_refuse_feature(void *handle, const char *function, const char *missing)
+/* FMI asks for a name with at least one character that is not white space. */
+static int is_empty(const char *name)
 {
-    sh_instance *instance = sh_enter(handle, SH_ANY, function);
-
-    if (instance != NULL) {
-        sh_report(instance, SH_ERROR, "%s: %s has no %s.", function, sh_fmu_model.identifier,
-                  missing);
+    while (*name == ' ' || *name == '\t' || *name == '\r' || *name == '\n') {
+        ++name;
     }
-    return SH_ERROR;
+    return *name == '\0';
 }
 
 static void set_start_values(sh_instance *instance)
@@ -119,6 +64,10 @@ sh_instance *sh_create(const sh_importer *importer, const char *name, const char
     char *own_name;
 
     if (!sh_has(&before, name, function, "instanceName")) {
+        return NULL;
+    }
+    if (is_empty(name)) {
+        sh_report(&before, SH_ERROR, "%s: argument instanceName is empty.", function);
         return NULL;
     }
     if (guid == NULL || strcmp(guid, sh_fmu_model.guid) != 0) {

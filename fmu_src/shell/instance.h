@@ -1,4 +1,10 @@
-/* An instance of the FMU, and access to the values of its variables, for every version of FMI. */
+/* An instance of the FMU, and access to the values of its variables.
+ *
+ * The shell is the same for every version of FMI. The functions of FMI in fmi2/ and fmi3/ only translate arguments and
+ * status for creation.h, simulation.h, access.h and saved_state.h. A call first passes guards.h, which refuses a wrong
+ * call with a message of log.h. The argument `function` of a function of the shell is the name of the function of FMI,
+ * with which all messages begin.
+ */
 #ifndef SH_INSTANCE_H
 #define SH_INSTANCE_H
 
@@ -44,12 +50,6 @@ static inline int sh_is_parameter(const sh_variable *variable)
 {
     return variable->role == SH_ROLE_FIXED || variable->role == SH_ROLE_TUNABLE;
 }
-
-/* Returns 1 if the variable may have this value, else 0 after a message. Only parameters have limits. An input may be
- * infinite or NaN, which makes the estimator skip ticks.
- */
-int sh_accepts(sh_instance *instance, const sh_variable *variable, double value,
-               const char *function);
 
 static inline void *sh_place(const sh_instance *instance, const sh_variable *variable)
 {

@@ -1,4 +1,4 @@
-/* Categories of the messages for the user, and the delivery of messages to the importer. */
+/* Messages for the user: the importer chooses categories, and sh_report (model.h) sends a message of one of them. */
 #ifndef SH_LOG_H
 #define SH_LOG_H
 
@@ -14,17 +14,10 @@ enum {
     SH_LOG_ALL = 15
 };
 
-/* The character sh_special has a special meaning in messages of a version of FMI, so sh_report writes it twice. The
- * function sh_deliver passes a message to the logger of the importer. This logger must not be NULL.
+/* Converts names of categories to a bit set *found of SH_LOG_*, which is SH_LOG_ALL if count is 0. Returns SH_WARNING,
+ * after a message, if a category is unknown and therefore ignored.
  */
-extern const char sh_special;
-void sh_deliver(const sh_instance *instance, sh_status status, const char *category,
-                const char *text);
-
-/* Converts names of categories to a bit set *found of SH_LOG_*, which is SH_LOG_ALL if count is 0. Unknown categories
- * are ignored with a warning. The importer passes `handle`, which may be NULL.
- */
-sh_status sh_find_categories(void *handle, size_t count, const char *const categories[],
+sh_status sh_find_categories(sh_instance *instance, size_t count, const char *const categories[],
                              unsigned *found, const char *function);
 
 #endif

@@ -1,14 +1,15 @@
-/* Functions that save, restore and serialise the state of the FMU, for every version of FMI.
- *
- * A saved state is a block of bytes without pointers: a header, followed by the model's struct. A serialised state
+/* A saved state is a block of bytes without pointers: a header, followed by the model's struct. A serialised state
  * has the same bytes as a saved state. Version, GUID, length and checksum show whether a block is damaged or belongs to
  * another FMU.
  */
+#include "saved_state.h"
+
 #include <stdint.h>
 #include <string.h>
 
+#include "allocation.h"
+#include "guards.h"
 #include "saved_bytes.h"
-#include "simulation.h"
 
 enum { GUID_LENGTH = 64 };
 

@@ -1,10 +1,12 @@
-/* Functions that check parameters, compute initial outputs and make communication steps, for every version of FMI. */
 #include "simulation.h"
 
 #include <float.h>
 #include <math.h>
 
-sh_status sh_check_parameters(sh_instance *instance)
+#include "guards.h"
+
+/* Checks the constraints between parameters, if a parameter was set after the last check. */
+static sh_status check_parameters(sh_instance *instance)
 {
     if (!instance->parameters_unchecked) {
         return SH_OK;
@@ -48,7 +50,7 @@ sh_status sh_initialize(sh_instance *instance)
     if (!instance->outputs_stale) {
         return SH_OK;
     }
-    if (sh_check_parameters(instance) != SH_OK) {
+    if (check_parameters(instance) != SH_OK) {
         return SH_ERROR;
     }
     sh_fmu_model.initialize(instance->model, instance->time);
@@ -193,7 +195,7 @@ sh_status sh_communication_step(void *handle, double t, double h, const char *fu
             function, t, end, instance->stop_time);
         return SH_ERROR;
     }
-    if (sh_check_parameters(instance) != SH_OK) {
+    if (check_parameters(instance) != SH_OK) {
         return SH_ERROR;
     }
     status = sh_fmu_model.step(instance->model, begin, length, instance);

@@ -158,6 +158,7 @@ ALLOWED = {
     r"fmi.(SetupExperiment|EnterInitializationMode)": {INSTANTIATED},
     r"fmi.ExitInitializationMode": {INITIALISATION},
     r"fmi.(DoStep|Terminate)": {STEP},
+    r"fmi3[GS]etClock": set(),  # only in event mode
     rf"fmi3Get{VARIABLES}": EVERYWHERE,
     rf"fmi2Get{VARIABLES}": EVERYWHERE - {INSTANTIATED},
     rf"fmi.Set({VARIABLES}|RealInputDerivatives)": EVERYWHERE - {TERMINATED},
@@ -191,6 +192,8 @@ def test_a_function_is_refused_where_the_standard_does_not_allow_it(state: str, 
             refused = any("not allowed" in text for _, _, text in fmu.messages)
             if state in allowed(fmu.prefix + function):
                 assert not refused, function
+                if re.fullmatch(rf"[GS]et{VARIABLES}", function):
+                    assert status == OK, function  # no references
                 continue
             assert status == ERROR, function
             assert len(fmu.messages) == 1
@@ -275,6 +278,10 @@ WRONG: dict[str, list[tuple[str, str, tuple[Any, ...]]]] = {
             for f in ("SetFloat64", "GetFloat64")
             for wrong in (0, 1, 3)
         ),
+        *(
+            (f, "which is Float64", (INPUTS, TWO, (SIZE * 2)(), VALUES, TWO))
+            for f in ("SetBinary", "GetBinary")
+        ),
     ],
 }
 """Calls by the version of FMI: function, part of the message, and arguments."""
@@ -316,6 +323,18 @@ def test_a_wrong_token_is_refused_with_both_values(token: str, fmi: Fmi) -> None
         message = error_of(fmu)
         assert message.startswith(f"{fmu.prefix}Instantiate")
         assert token in message and fmu.description.guid in message
+
+
+@pytest.mark.parametrize(
+    ("instance", "said"), [(None, "is NULL"), ("", "is empty"), (" \t\n\r", "is empty")]
+)
+def test_a_name_without_a_character_is_refused(instance: str | None, said: str, fmi: Fmi) -> None:
+    with fmi(name=instance) as fmu:
+        assert fmu.component is None
+        (message,) = fmu.messages
+        assert message[:2] == (ERROR, "logStatusError")
+        assert message[2].startswith(f"{fmu.prefix}Instantiate")
+        assert message[2].endswith(f": argument instanceName {said}.")
 
 
 def test_other_kinds_and_promises_of_fmi_3_are_refused(fmi3: Fmi) -> None:

@@ -183,7 +183,7 @@ class Instance(_Instance):
         self,
         fmu: Path,
         *,
-        name: str = "test",
+        name: str | None = "test",
         token: str | None = None,
         resources: str | None = "file:///",
         logger: bool = True,
@@ -202,7 +202,7 @@ class Instance(_Instance):
         self.callbacks.componentEnvironment = ENVIRONMENT
         self.dll.fmi2Instantiate.restype = ctypes.c_void_p
         self.component = self.dll.fmi2Instantiate(
-            name.encode(errors="surrogateescape"),
+            None if name is None else name.encode(errors="surrogateescape"),
             1,
             (self.description.guid if token is None else token).encode(errors="surrogateescape"),
             None if resources is None else resources.encode(),
@@ -250,6 +250,7 @@ class Instance3(_Instance):
         self,
         fmu: Path,
         *,
+        name: str | None = "test",
         token: str | None = None,
         logger: bool = True,
         logging_on: bool = True,
@@ -266,18 +267,25 @@ class Instance3(_Instance):
             "CoSimulation",
             *(event_mode, early_return, (ctypes.c_uint32 * len(intermediate))(*intermediate)),
             *(SIZE(len(intermediate)), ctypes.c_void_p(ENVIRONMENT), self.logger, None),
+            name=name,
             token=token,
             logging_on=logging_on,
         )
 
     def instantiate(
-        self, kind: str, *rest: Any, token: str | None = None, logging_on: bool = True
+        self,
+        kind: str,
+        *rest: Any,
+        name: str | None = "test",
+        token: str | None = None,
+        logging_on: bool = True,
     ) -> int | None:
         """Calls fmi3Instantiate of a kind. Returns the instance, None after an error."""
         function = self.dll[f"fmi3Instantiate{kind}"]
         function.restype = ctypes.c_void_p
         token = self.description.guid if token is None else token
-        made: int | None = function(b"test", token.encode(), b"", False, logging_on, *rest)
+        text = None if name is None else name.encode()
+        made: int | None = function(text, token.encode(), b"", False, logging_on, *rest)
         return made
 
     def _log(self, environment: int, status: int, category: bytes, text: bytes) -> None:

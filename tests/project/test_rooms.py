@@ -1,13 +1,19 @@
-"""Imports between the subpackages of sigmahat form no cycle and no long chain."""
+"""Imports between the subpackages of sigmahat follow the drawing in docs/architecture.md.
+
+They form no cycle and no long chain.
+"""
 
 import ast
+import re
 from collections.abc import Iterator, Mapping
 from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
 
-PACKAGE = Path(__file__).parents[2] / "harness" / "sigmahat"
+REPOSITORY = Path(__file__).parents[2]
+PACKAGE = REPOSITORY / "harness" / "sigmahat"
+PAGE = REPOSITORY / "docs" / "architecture.md"
 LONGEST = 10
 """Largest number of subpackages in a chain of imports, which begins at the command line."""
 
@@ -48,6 +54,19 @@ def rooms(graph: Graph) -> Graph:
     return every
 
 
+def drawn() -> list[list[str]]:
+    """Returns the rooms of each line in the drawing of the page, from top to bottom.
+
+    A line begins with the names of its rooms, with one space between two names. The text behind two
+    spaces is a remark.
+    """
+    _, _, section = PAGE.read_text(encoding="utf-8").partition("\n## The package in Python\n")
+    block = re.search(r"(?:^ +\S.*\n)+", section, re.MULTILINE)
+    assert block is not None
+    names = [line.strip().split("  ")[0] for line in block[0].splitlines()]
+    return [[name.removesuffix("/") for name in line.split(" ")] for line in names]
+
+
 def longest(graph: Graph) -> list[str]:
     """Returns the longest chain of imports. Raises CycleError if the imports form a cycle."""
     chains: dict[str, list[str]] = {}
@@ -63,3 +82,17 @@ def test_no_module_imports_itself_through_others(graph: Graph) -> None:
 
 def test_imports_run_one_way_through_few_rooms(graph: Graph) -> None:
     assert len(longest(rooms(graph))) <= LONGEST
+
+
+def test_a_room_imports_only_rooms_on_lower_lines_of_the_drawing(graph: Graph) -> None:
+    imports = rooms(graph)
+    place = [(name, line) for line, names in enumerate(drawn()) for name in names]
+    assert sorted(name for name, _ in place) == sorted(imports)
+    line_of = dict(place)
+    wrong = [
+        f"{name} imports {other}"
+        for name, others in imports.items()
+        for other in others
+        if line_of[other] <= line_of[name]
+    ]
+    assert wrong == []

@@ -4,8 +4,8 @@
  * it. The invariant therefore holds after any number of calls, in any order. The version of FMI is SH_FMI.
  */
 #include "fmi_calls.h"
+#include "saved_state.h"
 #include "shell_invariant.h"
-#include "simulation.h"
 
 #define CASE(number, ...)                                                                          \
     case number:                                                                                   \
@@ -176,9 +176,10 @@ static void free_created(sh_instance *created)
 }
 
 #if SH_FMI == 2
-static void create(const fmi2CallbackFunctions *functions, const char *guid)
+static void create(const char *instance_name, const fmi2CallbackFunctions *functions,
+                   const char *guid)
 {
-    free_created(fmi2Instantiate(any_choice() ? "joint" : NULL,
+    free_created(fmi2Instantiate(OR_NULL(instance_name),
                                  any_choice() ? fmi2CoSimulation : any_int(), OR_NULL(guid), NULL,
                                  functions, any_int(), any_int()));
 }
@@ -188,23 +189,25 @@ static void create_all(void)
     static const fmi2CallbackFunctions OWN = {NULL, allocate, release, NULL, NULL};
     static const fmi2CallbackFunctions NONE = {NULL, NULL, NULL, NULL, NULL};
 
-    create(NULL, "another");
-    create(&NONE, "another");
-    create(&NONE, sh_fmu_model.guid);
-    create(&OWN, sh_fmu_model.guid);
+    create("joint", NULL, "another");
+    create("joint", &NONE, "another");
+    create("joint", &NONE, sh_fmu_model.guid);
+    create("joint", &OWN, sh_fmu_model.guid);
+    create("", &OWN, sh_fmu_model.guid);
 }
 #else
-static void create(const char *token)
+static void create(const char *instance_name, const char *token)
 {
-    free_created(fmi3InstantiateCoSimulation(OR_NULL("joint"), OR_NULL(token), NULL, any_choice(),
-                                             any_choice(), any_choice(), any_choice(), NULL,
-                                             any_size(), NULL, NULL, NULL));
+    free_created(fmi3InstantiateCoSimulation(OR_NULL(instance_name), OR_NULL(token), NULL,
+                                             any_choice(), any_choice(), any_choice(), any_choice(),
+                                             NULL, any_size(), NULL, NULL, NULL));
 }
 
 static void create_all(void)
 {
-    create("another");
-    create(sh_fmu_model.guid);
+    create("joint", "another");
+    create("joint", sh_fmu_model.guid);
+    create("", sh_fmu_model.guid);
     free_created(
         fmi3InstantiateModelExchange("joint", NULL, NULL, any_choice(), any_choice(), NULL, NULL));
     free_created(fmi3InstantiateScheduledExecution("joint", NULL, NULL, any_choice(), any_choice(),

@@ -1,4 +1,5 @@
 /* The de-serialiser: any bytes of any length, then the state that they make, then a step. */
+#include "saved_state.h"
 #include "shell_invariant.h"
 #include "simulation.h"
 

@@ -41,7 +41,7 @@ MODELS = {
 }
 # Functions after which Eva keeps failure and success apart.
 OUTCOMES = """
-sh_allocate malloc sh_check_parameters is_state defect_of_bytes is_sound defect_of_block
+sh_allocate malloc check_parameters is_state defect_of_bytes is_sound defect_of_block
 sh_deserialize_state sh_restore_state sh_enter sh_has is_initialized sh_initialize any_choice
 importer_allocates sh_end_initialization sh_create sh_set_up sh_begin_initialization
 """
