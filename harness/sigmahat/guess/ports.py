@@ -8,10 +8,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sigmahat.guess.columns import TURN, Column, Columns, counts_per_turn, unit_of_steps
+from sigmahat.guess.columns import Column, Columns
 from sigmahat.guess.relations import line, scale_of_derivative
 from sigmahat.guess.roles import Role, Roles
+from sigmahat.recording.column import counts_of_steps, unit_of_steps
 from sigmahat.recording.log import Array
+from sigmahat.recording.units import TURN
 
 _AFTER_GEAR = 1.4  # largest ratio of motor to link motion if the encoder is after the gear
 _AS_FAR = 0.15  # largest relative difference between the motions of motor and link after the gear
@@ -87,9 +89,9 @@ def _angle(column: Column, columns: Columns, is_link: bool) -> tuple[str, str]:
         return column.meaning.unit, ""
     if column.facts.integer:
         return "counts", "whole numbers"
-    unit = unit_of_steps(column.facts)
+    unit = unit_of_steps(column.facts.step)
     if unit:
-        return unit, f"by its steps, 1/{counts_per_turn(column.facts, unit)} turn"
+        return unit, f"by its steps, 1/{counts_of_steps(column.facts.step, unit)} turn"
     unit = _unit_by_velocity(column, columns.signals, columns.window_T)
     if unit:
         return unit, "by its velocity"
@@ -121,7 +123,7 @@ def _unit_by_velocity(column: Column, signals: Sequence[Column], T: float) -> st
 
 def _set_unit(port: PortGuess, column: Column, columns: Columns, is_link: bool) -> None:
     port.unit, how = _angle(column, columns, is_link)
-    port.steps = counts_per_turn(column.facts, port.unit)
+    port.steps = counts_of_steps(column.facts.step, port.unit)
     if how:
         port.notes["unit"] = how
     wrap, (least, most) = column.facts.wrap, _SINGLE_TURN

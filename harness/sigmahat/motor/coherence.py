@@ -6,13 +6,16 @@ In a regressor, these errors would make the stiffness too small.
 
 import itertools
 import math
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from sigmahat.motor import equation
-from sigmahat.motor.equation import MOTOR, Equations, Form, Signals
+from sigmahat.motor.equation import MOTOR, Equations, Form
+from sigmahat.motor.log_view import LogView
 from sigmahat.motor.noise import TorqueNoise
+from sigmahat.motor.signals import Signals
 from sigmahat.recording.log import Array
 
 _FIRST = 5.0  # low pass of the fit from which the spectra are computed [Hz]
@@ -22,6 +25,29 @@ _COHERENT = 0.5
 _LARGER = 4.0  # least ratio of the power of the deformation to the power from the torque noise
 _BUTTERWORTH = 1.11  # noise bandwidth of the low pass divided by its frequency
 _HIDDEN = 0.5  # least ratio of the rounding variance to the residual variance of the deformation
+
+
+@dataclass(frozen=True)
+class PassBand:
+    """Frequencies at which a log shows the motor equation."""
+
+    noise: TorqueNoise
+    coherent: float  # frequency above which the deformation is noise [Hz]; inf without noise
+
+    def low_pass(self, T: float) -> float:
+        """Returns the low pass of the equations [Hz], for samples T apart [s]."""
+        return min(replace(self.noise, T=T).bandwidth, self.coherent)
+
+
+def pass_band(view: LogView, has_sensor: bool) -> PassBand:
+    """Finds the frequencies at which the longest stretch of a log shows the motor equation.
+
+    has_sensor  whether a torque sensor replaces the spring or the motor
+    """
+    longest = view.longest
+    noise = TorqueNoise.of(longest.tau, longest.theta, view.parameters, view.T)
+    coherent = math.inf if has_sensor else coherent_range(longest, view.gamma, noise)
+    return PassBand(noise, coherent)
 
 
 def coherent_range(piece: Signals, gamma: float, noise: TorqueNoise) -> float:

@@ -7,10 +7,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sigmahat.motor import equation
-from sigmahat.motor.equation import MOTOR, Fit, Form, Signals, Stribeck
+from sigmahat.motor.equation import MOTOR, Choice, Fit, Form
+from sigmahat.motor.friction import frictions, slower, with_all_columns
 from sigmahat.motor.quantities import Quantity
-from sigmahat.motor.spring import Spring
-from sigmahat.recording.log import Array
+from sigmahat.motor.signals import Signals, set_point_moves
+from sigmahat.motor.spring import Spring, is_narrow
 
 _UNITS = {"B": "kg.m2", "D_theta": "N.m.s/rad", "tau_coulomb": "N.m"}
 _RELATIVE = 0.1  # largest half width of a determined value, relative to the value
@@ -20,10 +21,6 @@ _POWERS = 4
 interval of the stiffness is a quarter wider; with 3, the interval contains fewer true curves."""
 _SAMPLING = {"B": 0.015, "tau_coulomb": 0.015, "D_theta": 0.001}
 """Relative errors without noise, because reversals happen between samples of period 1 ms."""
-_OF_COVERED = 0.05  # largest half width of a known zero, relative to the range of the deformation
-_STRIBECK = tuple(
-    Stribeck(v, delta) for v in (0.01, 0.02, 0.04, 0.08, 0.16, 0.32) for delta in (1.0, 2.0)
-)
 _ENDS = (0.0, -1.96, 1.96)  # mean and interval ends of a known inertia, in standard deviations
 _FAR = 5.0  # largest plausible error of a known B, in standard deviations
 _ANOTHER = 0.5  # smallest relative error of B that suggests a wrong scale of the torque
@@ -80,9 +77,7 @@ def fit_motor(
     inertia  known B: if the log does not determine B, the other quantities are identified with
              the known value
     """
-    longest = max(pieces, key=lambda piece: len(piece.theta))
-    m_most = _M if np.ptp(longest.set_point) > 0 else 1
-    form = Form(f_0, min(2.5 * f_0, equation.WIDEST / T), n=_N, m=m_most)
+    form = Form.of_low_pass(f_0, T, n=_N, m=_M if set_point_moves(pieces) else 1)
     without_sensor = [replace(piece, tau_e=None) for piece in pieces]
     form, polynomial = _with_spring(without_sensor, T, gamma, form, symmetric)
     torque = float(np.std(np.concatenate([piece.tau for piece in pieces])))
@@ -113,15 +108,16 @@ def _with_spring(
     interval of the stiffness would be too narrow.
     """
 
-    def chosen(form: Form) -> tuple[Form, Array]:
+    def chosen(form: Form) -> Choice:
         return equation.choose(equation.equations(pieces, T, gamma, form), form)
 
-    odd, errors = chosen(form)
+    odd = chosen(form)
     if symmetric:
-        return odd, replace(odd, n=_POWERS)
-    every, errors_of_all = chosen(form.with_all_powers())
-    best = every if equation.is_more(np.log(errors / errors_of_all)) else odd
-    return best, replace(every, n=_POWERS, m=best.m)
+        return odd.form, replace(odd.form, n=_POWERS)
+    general = chosen(form.with_all_powers())
+    is_general = equation.is_more(np.log(odd.errors / general.errors))
+    best = general.form if is_general else odd.form
+    return best, replace(general.form, n=_POWERS, m=best.m)
 
 
 @dataclass(frozen=True)
@@ -137,21 +133,6 @@ class Variants:
     frictions: Sequence[Fit]  # fits with other forms of friction
 
 
-def _frictions(plain: Form) -> list[Form]:
-    """Returns all forms of the equation with other models of friction."""
-    load = replace(plain, load_friction=True)
-    return [
-        replace(plain, coulomb_velocity=equation.COULOMB_VELOCITY / 4),
-        replace(plain, coulomb_velocity=equation.COULOMB_VELOCITY * 2),
-        load,
-        *(replace(each, stribeck=(one,)) for each in (plain, load) for one in _STRIBECK),
-    ]
-
-
-def _with_all_columns(form: Form) -> Form:
-    return replace(form, load_friction=True, stribeck=_STRIBECK, delay=True)
-
-
 def _variants(
     pieces: Sequence[Signals], T: float, gamma: float, form: Form, inertia: KnownInertia | None
 ) -> tuple[Variants, Variants | None]:
@@ -162,12 +143,12 @@ def _variants(
     The second result has the fits with the known B, if a known B exists.
     """
     sensor = pieces[0].tau_e is not None
-    widest = _with_all_columns(form)
+    widest = with_all_columns(form)
     whole, names = equation.equations(pieces, T, gamma, widest), set(widest.names(sensor))
 
     def fits_of(each: Form) -> list[Fit]:
         """Fits with an unknown B, then with the known B and with both ends of its interval."""
-        if _with_all_columns(each) == widest:  # neither a filter nor v_s differs
+        if with_all_columns(each) == widest:  # neither a filter nor v_s differs
             system = whole.without(names.difference(each.names(sensor)))
         else:
             system = equation.equations(pieces, T, gamma, each)
@@ -175,12 +156,12 @@ def _variants(
         return [equation.fit(each) for each in (system, *(system.known("B", B) for B in ends))]
 
     plain = replace(form, delay=True)
-    every = {each: fits_of(each) for each in (plain, *_frictions(plain))}
+    every = {each: fits_of(each) for each in (plain, *frictions(plain))}
     best = min(every, key=lambda each: np.nan_to_num(every[each][0].error, nan=np.inf))
     chosen = best if equation.is_worse(every[plain][0], every[best][0]) else plain
     filters = [
         fits_of(replace(chosen, wide=min(2 * form.wide, 2 * equation.WIDEST / T))),
-        fits_of(replace(chosen, f_0=0.6 * form.f_0)),
+        fits_of(slower(chosen)),
     ]
     first = every.pop(chosen)
     free, *known = (
@@ -234,5 +215,5 @@ def _zero(spring: Spring, fits: Sequence[Fit], gamma: float) -> Quantity:
         return Quantity(math.nan, math.inf, "rad", False)
     half_width = spring.half_width(value) + max(abs(other - value) for other in others)
     is_stiff = spring.slope(value) * gamma < 0
-    is_narrow = half_width < _OF_COVERED * spring.covered
-    return Quantity(value, half_width, "rad", bool(is_stiff and is_narrow))
+    is_known = is_stiff and is_narrow(half_width, spring.covered)
+    return Quantity(value, half_width, "rad", bool(is_known))

@@ -13,11 +13,35 @@ from itertools import combinations
 import numpy as np
 
 from sigmahat.estimator.powers import powers_of_phi
-from sigmahat.motor import equation
-from sigmahat.motor.equation import CONSTANT, WIDEST, Equations, Fit, Form, Signals
+from sigmahat.motor import equation, signals
+from sigmahat.motor.equation import CONSTANT, Equations, Fit, Form
+from sigmahat.motor.signals import Signals
 from sigmahat.recording.log import Array
 
 _USUAL = (0.005, 0.995)  # quantiles of the deformation between which the polynomial is valid
+_OF_COVERED = 0.05
+"""Smallest relevant error of the zero, and largest half width of a known zero, relative to the
+range of the deformation."""
+
+
+def covered(pieces: Sequence[Signals]) -> float:
+    """Computes the range of the deformation in a log [rad]."""
+    return float(np.ptp(np.concatenate([piece.phi for piece in pieces])))
+
+
+def is_narrow(half_width: float, covered: float) -> bool:
+    """Returns whether the interval of a zero is short compared with the range `covered` [rad]."""
+    return half_width < _OF_COVERED * covered
+
+
+def is_off(zero: float, half_width: float, covered: float) -> bool:
+    """Returns whether the zero of the deformation is known, and is relevantly different from 0.
+
+    zero, half_width  deformation without torque, and half of its 95 % interval [rad]
+    covered           range of the deformation in the log [rad]
+    """
+    is_relevant = abs(zero) > max(half_width, _OF_COVERED * covered)
+    return is_narrow(half_width, covered) and is_relevant
 
 
 @dataclass(frozen=True)
@@ -31,12 +55,12 @@ class Spring:
     @cached_property
     def units(self) -> tuple[float, float]:
         """Divisors of deformation and set-point in the polynomial [rad, 1], as in Equations."""
-        return equation.units(self.pieces)
+        return signals.units(self.pieces)
 
     @property
     def covered(self) -> float:
         """Range of the deformation in the log [rad]."""
-        return float(np.ptp(np.concatenate([each.phi for each in self.pieces])))
+        return covered(self.pieces)
 
     def zero(self) -> float:
         """Computes the deformation at which spring and constant torque cancel [rad], else nan.
@@ -128,7 +152,7 @@ _ORDER = 4  # powers of the torque of each of the two springs
 
 def plain_equations(pieces: Sequence[Signals], T: float, gamma: float, f_0: float) -> Equations:
     """Computes equations with one spring of all powers, without set-point, else as fit_motor()."""
-    form = Form(f_0, min(2.5 * f_0, WIDEST / T), n=_ORDER, symmetric=False)
+    form = Form.of_low_pass(f_0, T, n=_ORDER, symmetric=False)
     return equation.equations(pieces, T, gamma, form)
 
 
@@ -138,7 +162,7 @@ def change_of_spring(system: Equations, pieces: Sequence[Signals]) -> int | None
 
     Samples are counted over all stretches. The argument system is from plain_equations().
     """
-    if equation.set_point_moves(pieces):
+    if signals.set_point_moves(pieces):
         return None
     scale = system.scale
     R = system.R / np.append(np.where(scale > 0, scale, 1.0), 1.0)
@@ -167,7 +191,7 @@ def change_of_spring(system: Equations, pieces: Sequence[Signals]) -> int | None
 
 def with_two_springs(pieces: Sequence[Signals], first: int) -> list[Signals]:
     """Adds regressors for a change of the spring torque, which are 0 before the sample `first`."""
-    unit, begin, found = equation.units(pieces)[0], 0, []
+    unit, begin, found = signals.units(pieces)[0], 0, []
     for piece in pieces:
         later = np.arange(begin, begin + len(piece.phi)) >= first
         powers: Array = np.vander(piece.phi / unit, _ORDER, increasing=True)
