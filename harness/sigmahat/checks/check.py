@@ -15,6 +15,7 @@ from sigmahat.fmi.instance import FmuError, Slave, Value, installed
 from sigmahat.motor.hypotheses.hypothesis import with_value
 from sigmahat.motor.hypotheses.positions import positions
 from sigmahat.motor.log_view import LogView, liveliest_part
+from sigmahat.motor.motor_fit import is_inertia_given
 from sigmahat.motor.noise import variance
 from sigmahat.motor.quantities import WIDE
 from sigmahat.recording.configuration import PORTS, Configuration
@@ -73,14 +74,14 @@ def check_identified(log: Log, before: Configuration, after: Configuration) -> C
     Raises LogError, FmuError as `check`.
     """
     checked = check(log, after)
-    is_given = "motor.B" in before.parameters and float(all_parameters(before)["prior.B"]) < WIDE
-    if before == after or not is_given:
+    if before == after or not is_inertia_given(before, all_parameters(before)):
         return checked
     spoiled = any(each.kind in (Kind.AT_REST, Kind.JUMP, Kind.SPIKE) for each in checked.findings)
-    found = (
-        [] if spoiled else _of_motion(liveliest_part(log, before), [])
-    )  # its columns were checked above
-    of_inertia = [each for each in found if each.kind in _INERTIA]
+    of_inertia = []
+    if not spoiled:
+        view = liveliest_part(log, before)
+        # The columns were checked above.
+        of_inertia = [each for each in _of_motion(view, []) if each.kind in _INERTIA]
     others = [each for each in checked.findings if each.kind not in _INERTIA]
     return replace(checked, findings=[*of_inertia, *others])
 

@@ -15,7 +15,7 @@ from sigmahat.motor.coherence import is_hidden, pass_band
 from sigmahat.motor.log_view import first_part
 from sigmahat.motor.motor_fit import KnownInertia, MotorFit, fit_motor
 from sigmahat.motor.noise import count, is_only_noise, low_pass
-from sigmahat.motor.quantities import WIDE, Identified, Quantity
+from sigmahat.motor.quantities import Identified, Quantity
 from sigmahat.motor.signals import Signals, set_point_moves, shortest
 from sigmahat.motor.spring import (
     change_of_spring,
@@ -100,7 +100,7 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
     apart = _apart(pieces, count(view.parameters))
     h = apart * T
     thinned = [piece.with_acting_torque()[::apart] for piece in pieces]
-    inertia = _known_inertia(view.parameters, configuration)
+    inertia = KnownInertia.of(view)
     f_0 = band.low_pass(h)
     change, hidden = None, False
     if not torque_constant:
@@ -189,15 +189,6 @@ def _apart(pieces: Sequence[Signals], count: float) -> int:
         return 1
     longest = max(len(each.theta) for each in pieces)
     return max(1, min(math.ceil(2 * count / moved), longest // _FEWEST))
-
-
-def _known_inertia(
-    parameters: Mapping[str, Value], configuration: Configuration
-) -> KnownInertia | None:
-    """Returns the configured B, unless its prior is the wide prior for an unknown B."""
-    std = float(parameters["prior.B"])
-    given = "motor.B" in configuration.parameters
-    return KnownInertia(float(parameters["motor.B"]), std) if given and 0 < std < WIDE else None
 
 
 def _center(zero: Quantity | None, pieces: Sequence[Signals]) -> float:

@@ -1,17 +1,22 @@
 """Computes motor data with 95 % intervals, from several fits of the motor equation."""
 
+from __future__ import annotations
+
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from sigmahat.fmi.instance import Value
 from sigmahat.motor import equation
 from sigmahat.motor.equation import MOTOR, Choice, Fit, Form
 from sigmahat.motor.friction import frictions, slower, with_all_columns
-from sigmahat.motor.quantities import Quantity
+from sigmahat.motor.log_view import LogView
+from sigmahat.motor.quantities import WIDE, Quantity
 from sigmahat.motor.signals import Signals, set_point_moves
 from sigmahat.motor.spring import Spring, is_narrow
+from sigmahat.recording.configuration import Configuration
 
 _UNITS = {"B": "kg.m2", "D_theta": "N.m.s/rad", "tau_coulomb": "N.m"}
 _RELATIVE = 0.1  # largest half width of a determined value, relative to the value
@@ -27,12 +32,28 @@ _ANOTHER = 0.5  # smallest relative error of B that suggests a wrong scale of th
 _N, _M = 4, 4  # highest orders of the polynomial that are tried
 
 
+def is_inertia_given(configuration: Configuration, parameters: Mapping[str, Value]) -> bool:
+    """Returns whether the configuration gives B, and not with the wide prior of an unknown B.
+
+    parameters  all parameters of the estimator
+    """
+    return "motor.B" in configuration.parameters and float(parameters["prior.B"]) < WIDE
+
+
 @dataclass(frozen=True)
 class KnownInertia:
     """The inertia B from the configuration, with its uncertainty."""
 
     value: float  # [kg.m2]
     std: float  # standard deviation of the relative error of B, > 0
+
+    @staticmethod
+    def of(view: LogView) -> KnownInertia | None:
+        """Returns the inertia of a configuration, if it is given with a prior above 0."""
+        std = float(view.parameters["prior.B"])
+        if not is_inertia_given(view.configuration, view.parameters) or not std > 0:
+            return None
+        return KnownInertia(float(view.parameters["motor.B"]), std)
 
     def contradicts(self, found: Quantity) -> bool:
         """Returns whether the error of B is so large that the scale of the torque may be wrong. A

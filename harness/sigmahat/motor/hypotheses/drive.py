@@ -41,9 +41,7 @@ def drive(x: Array, y: Array, tau: Array) -> Drive:
     slope = slope_of([np.column_stack([x, y])], _T)
     position = x - x.mean()
     phi = (y - y.mean()) / slope.value - position if slope else 0 * x
-    piece = Signals(
-        theta=x, phi=phi, set_point=0 * x, tau=tau, tau_e=None, extra=position[:, None]
-    )
+    piece = Signals(theta=x, phi=phi, set_point=0 * x, tau=tau, tau_e=None, extra=position[:, None])
     velocity = np.gradient(low_pass(x, _HIGHEST, _T), _T)
     v_s = _COULOMB * float(np.abs(velocity).max())
     form = Form(_HIGHEST, _HIGHEST, coulomb_velocity=v_s)
