@@ -62,8 +62,8 @@ def coherent_range(piece: Signals, gamma: float, noise: TorqueNoise) -> float:
         return math.inf
     slow = Form(min(_FIRST, highest), min(_FIRST, highest))
     system = equation.equations([piece], T, gamma, slow)
-    found = equation.fit(system)
-    p, motor = np.array(list(found.value.values())), slice(len(MOTOR))
+    p = np.array(list(equation.fit(system).value.values()))
+    motor = slice(len(MOTOR))
     rest = slice(len(MOTOR), None)
     torques, springs = [], []
     for even in equation.rows(piece, T, gamma, Form(highest, highest), system.units):
@@ -118,8 +118,7 @@ def is_hidden(system: Equations, f_0: float, T: float, noise: float, known: bool
     known   whether the inertia is known
     """
     names = [*MOTOR[int(known) :], *equation.eta(2, 1)]  # the spring is a constant and a slope
-    own = system.only(names)
-    R = equation.factor(own.R.reshape(-1, own.R.shape[2]))
+    R = system.only(names).factor()
     others, spring = R[:, :-2], R[:, -2]  # the last one is y
     left = spring - others @ np.linalg.lstsq(others, spring, rcond=None)[0]
     variance = float(left @ left) / int(system.rows.sum()) * system.units[0] ** 2

@@ -139,15 +139,18 @@ class Equations:
 
     def in_parts(self, parts: int) -> Equations:
         """Combines the blocks of the equations to fewer, longer blocks."""
-        every = [each for each in self.parts(parts) if len(each.rows)]
-        columns = self.R.shape[2]
+        filled = [part for part in self.parts(parts) if len(part.rows)]
         return replace(
             self,
-            ZX=np.array([each.ZX.sum(axis=0) for each in every]),
-            Zy=np.array([each.Zy.sum(axis=0) for each in every]),
-            R=np.array([factor(each.R.reshape(-1, columns)) for each in every]),
-            rows=np.array([each.rows.sum() for each in every]),
+            ZX=np.array([part.ZX.sum(axis=0) for part in filled]),
+            Zy=np.array([part.Zy.sum(axis=0) for part in filled]),
+            R=np.array([part.factor() for part in filled]),
+            rows=np.array([part.rows.sum() for part in filled]),
         )
+
+    def factor(self) -> Array:
+        """Returns the QR factor of all blocks together."""
+        return factor(self.R.reshape(-1, self.R.shape[2]))
 
 
 def factor(X: Array) -> Array:
@@ -163,15 +166,15 @@ def equations(pieces: Sequence[Signals], T: float, gamma: float, form: Form) -> 
     of_polynomial = units(pieces)
     parts = []
     for piece in pieces:
-        for each in rows(piece, T, gamma, form, of_polynomial):
-            y, X, Z = (_in_blocks(x, each.place, T) for x in (each.y[..., None], each.X, each.Z))
+        for part in rows(piece, T, gamma, form, of_polynomial):
+            y, X, Z = (_in_blocks(x, part.place, T) for x in (part.y[..., None], part.X, part.Z))
             ZX, Zy = Z.swapaxes(1, 2) @ X, (Z.swapaxes(1, 2) @ y)[..., 0]
-            of_block = np.bincount(each.place // _block(T) - each.place[0] // _block(T))
+            of_block = np.bincount(part.place // _block(T) - part.place[0] // _block(T))
             parts.append((ZX, Zy, factor(np.concatenate([X, y], axis=2)), 2 * of_block))
     names = form.names(pieces[0].tau_e is not None)
     if pieces[0].extra is not None:
         names += [extra(i) for i in range(pieces[0].extra.shape[1])]
-    ZX, Zy, R, number = (np.concatenate(each) for each in zip(*parts, strict=True))
+    ZX, Zy, R, number = (np.concatenate(blocks) for blocks in zip(*parts, strict=True))
     return Equations(ZX, Zy, R, number, names, of_polynomial)
 
 
@@ -206,13 +209,13 @@ def rows(
             _half(part[half::2], velocity[half::2], direction[half::2], 2 * T, gamma, form, units)
             for half in (0, 1)
         ]
-        y, X = (np.stack(each) for each in zip(*halves, strict=True))
+        y, X = (np.stack(both) for both in zip(*halves, strict=True))
         Z = np.empty_like(X)
         Z[0, 1:], Z[0, 0] = (X[1, 1:] + X[1, :-1]) / 2, X[1, 0]  # at the times of even samples
         Z[1, :-1], Z[1, -1] = (X[0, 1:] + X[0, :-1]) / 2, X[0, -1]
         if piece.extra is not None:
-            own = X.shape[2] - piece.extra.shape[1]
-            Z[..., own:] = X[..., own:]
+            first_extra = X.shape[2] - piece.extra.shape[1]
+            Z[..., first_extra:] = X[..., first_extra:]
         place = np.arange(max(begin, edge), min(begin + step, count - edge))
         inner = place - first
         yield Rows(y[:, inner], X[:, inner], Z[:, inner], place)
@@ -368,7 +371,7 @@ def fit(e: Equations) -> Fit:
 def residual(e: Equations) -> float:
     """Computes the sum of squared errors of ordinary least squares, also for equations whose
     regressors depend on each other. Noise of the regressors biases its coefficients, see above."""
-    R = factor(e.R.reshape(-1, e.R.shape[2]))
+    R = e.factor()
     X, y = R[:, :-1], R[:, -1]
     X = X / (np.linalg.norm(X, axis=0) + 1e-300)
     left = y - X @ np.linalg.lstsq(X, y, rcond=1e-10)[0]
@@ -405,7 +408,7 @@ def left_out(e: Equations) -> Array:
     scale[scale == 0] = 1.0
     A, b = e.ZX / np.outer(scale, scale), e.Zy / scale
     others = zip(A.sum(axis=0) - A, b.sum(axis=0) - b, strict=True)
-    fits = [np.linalg.lstsq(*each, rcond=1e-12)[0] / scale for each in others]
+    fits = [np.linalg.lstsq(*sums, rcond=1e-12)[0] / scale for sums in others]
     return np.array([e.errors(p)[i] / e.rows[i] for i, p in enumerate(fits)])
 
 

@@ -115,8 +115,8 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
     changed = None if change is None else change * h
     if no_torque or hidden:
         quantities = {
-            name: Quantity(math.nan, math.inf, each.unit, determined=False)
-            for name, each in quantities.items()
+            name: Quantity(math.nan, math.inf, quantity.unit, determined=False)
+            for name, quantity in quantities.items()
         }
     if quantities["B"].determined:  # the first bandwidth was computed with the configured B
         bandwidth = replace(noise, inertia=quantities["B"].value * abs(gamma)).bandwidth
@@ -145,7 +145,7 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
         set_point_moves=set_point_moves(pieces),
         torque=0.0
         if no_torque
-        else max(spring, *(abs(gamma) * float(np.max(np.abs(each.tau))) for each in pieces)),
+        else max(spring, *(abs(gamma) * float(np.max(np.abs(piece.tau))) for piece in pieces)),
         B=float(view.parameters["motor.B"]),
         D_theta=float(view.parameters["motor.D_theta"]),
         notes=[*samples.notes, *_notes(changed, motor, inertia, no_torque, hidden)],
@@ -184,10 +184,10 @@ def _apart(pieces: Sequence[Signals], count: float) -> int:
     The rounding errors must be independent from one sample to the next. In slow motion, adjacent
     samples have equal rounding errors.
     """
-    moved = math.sqrt(np.mean(np.concatenate([np.diff(each.theta) for each in pieces]) ** 2))
+    moved = math.sqrt(np.mean(np.concatenate([np.diff(piece.theta) for piece in pieces]) ** 2))
     if moved >= count or moved == 0:
         return 1
-    longest = max(len(each.theta) for each in pieces)
+    longest = max(len(piece.theta) for piece in pieces)
     return max(1, min(math.ceil(2 * count / moved), longest // _FEWEST))
 
 

@@ -167,26 +167,26 @@ def _variants(
     widest = with_all_columns(form)
     whole, names = equation.equations(pieces, T, gamma, widest), set(widest.names(sensor))
 
-    def fits_of(each: Form) -> list[Fit]:
+    def fits_of(other: Form) -> list[Fit]:
         """Fits with an unknown B, then with the known B and with both ends of its interval."""
-        if with_all_columns(each) == widest:  # neither a filter nor v_s differs
-            system = whole.without(names.difference(each.names(sensor)))
+        if with_all_columns(other) == widest:  # neither a filter nor v_s differs
+            system = whole.without(names.difference(other.names(sensor)))
         else:
-            system = equation.equations(pieces, T, gamma, each)
+            system = equation.equations(pieces, T, gamma, other)
         ends = [] if inertia is None else [inertia.value * (1 + k * inertia.std) for k in _ENDS]
-        return [equation.fit(each) for each in (system, *(system.known("B", B) for B in ends))]
+        return [equation.fit(e) for e in (system, *(system.known("B", B) for B in ends))]
 
     plain = replace(form, delay=True)
-    every = {each: fits_of(each) for each in (plain, *frictions(plain))}
-    best = min(every, key=lambda each: np.nan_to_num(every[each][0].error, nan=np.inf))
-    chosen = best if equation.is_worse(every[plain][0], every[best][0]) else plain
+    fits = {other: fits_of(other) for other in (plain, *frictions(plain))}
+    best = min(fits, key=lambda other: np.nan_to_num(fits[other][0].error, nan=np.inf))
+    chosen = best if equation.is_worse(fits[plain][0], fits[best][0]) else plain
     filters = [
         fits_of(replace(chosen, wide=min(2 * form.wide, 2 * equation.WIDEST / T))),
         fits_of(slower(chosen)),
     ]
-    first = every.pop(chosen)
+    first = fits.pop(chosen)
     free, *known = (
-        Variants(first[i], [each[i] for each in filters], [each[i] for each in every.values()])
+        Variants(first[i], [fit[i] for fit in filters], [fit[i] for fit in fits.values()])
         for i in range(min(2, len(first)))
     )
     if not known:
@@ -231,7 +231,7 @@ def _zero(spring: Spring, fits: Sequence[Fit], gamma: float) -> Quantity:
     The zero is determined if its interval is short compared with the range of the deformation, and
     if the stiffness is positive. A negative stiffness means a wrong sign or gear ratio.
     """
-    value, *others = (replace(spring, fit=each).zero() for each in (spring.fit, *fits))
+    value, *others = (replace(spring, fit=fit).zero() for fit in (spring.fit, *fits))
     if not all(map(math.isfinite, [value, *others])):
         return Quantity(math.nan, math.inf, "rad", False)
     half_width = spring.half_width(value) + max(abs(other - value) for other in others)
