@@ -13,7 +13,7 @@ from sigmahat.checks.samples import at_rest, of_columns
 from sigmahat.checks.text import DOUBTS
 from sigmahat.fmi.instance import FmuError, Slave, Value, installed
 from sigmahat.motor.hypotheses.hypothesis import with_value
-from sigmahat.motor.hypotheses.positions import positions
+from sigmahat.motor.hypotheses.positions import compare_positions
 from sigmahat.motor.log_view import LogView, liveliest_part
 from sigmahat.motor.motor_fit import is_inertia_given
 from sigmahat.motor.noise import variance
@@ -126,7 +126,7 @@ def _contradictions(view: LogView) -> Sequence[Finding]:
 
 def _of_motion(view: LogView, recorded: Sequence[Finding]) -> Iterator[Finding]:
     """Yields contradictions by the motion, and findings of the columns with other causes."""
-    compared = positions(view)
+    compared = compare_positions(view)
     found = list(of_positions(compared))
     yield from found
     keys = {each.key for each in found}

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from sigmahat.checks.findings import Finding, Kind, Severity
 from sigmahat.motor.hypotheses.hypothesis import Evidence, distance
 from sigmahat.motor.hypotheses.positions import Positions, swapped
-from sigmahat.motor.hypotheses.torque import Delay, Inertia, Zero, is_friction_known, torque
+from sigmahat.motor.hypotheses.torque import Delay, Inertia, Zero, compare_torque, is_friction_known
 from sigmahat.motor.log_view import LogView
 
 _STD = 3.0  # a prior contradicts the log beyond this number of standard deviations
@@ -66,7 +66,8 @@ def of_gears(view: LogView) -> Iterator[Finding]:
 
 
 def of_torque(positions: Positions) -> Iterator[Finding]:
-    view, evidence = positions.view, torque(positions)
+    view = positions.view
+    evidence = compare_torque(positions)
     if evidence.gear is not None:
         yield finding(Kind.SLOPE, Severity.WRONG, evidence.gear, "", 1.0)
     if evidence.sign is not None:

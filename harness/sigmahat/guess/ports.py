@@ -12,7 +12,7 @@ from sigmahat.guess.columns import Column, Columns
 from sigmahat.guess.relations import line, scale_of_derivative
 from sigmahat.guess.roles import Role, Roles
 from sigmahat.motor.hypotheses.hypothesis import unit_of_same_turn
-from sigmahat.motor.hypotheses.positions import Slope, gear_between, slope_of
+from sigmahat.motor.hypotheses.slope import Slope, gear_between, slope_of
 from sigmahat.recording.column import counts_of_steps, unit_of_steps
 from sigmahat.recording.log import Array
 from sigmahat.recording.units import TURN

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sigmahat.motor.equation import CONSTANT, WIDEST, Equations, Form, equations, residual
-from sigmahat.motor.hypotheses.positions import slope_of
+from sigmahat.motor.hypotheses.slope import slope_of
 from sigmahat.motor.noise import low_pass
 from sigmahat.motor.quick_fit import LINEAR
 from sigmahat.motor.signals import Signals

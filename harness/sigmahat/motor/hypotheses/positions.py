@@ -26,12 +26,11 @@ from sigmahat.motor.hypotheses.hypothesis import (
     gear_of_slope,
     mistyped_gears,
     scales,
-    whole_gear,
 )
+from sigmahat.motor.hypotheses.slope import Slope, slope_of
 from sigmahat.motor.log_view import LogView, liveliest_part
-from sigmahat.motor.noise import low_pass
 from sigmahat.motor.quick_fit import LINEAR, QuickFit, gear_error, quick_fit
-from sigmahat.recording.log import Array, LogError
+from sigmahat.recording.log import LogError
 
 PORTS = ("theta", "q")
 _LIKE = math.log(1.5)
@@ -45,63 +44,8 @@ _FARTHEST = 100.0  # largest factor by which a resonance enlarges the link motio
 _BETTER = 0.8  # largest ratio of the squared errors, after to before
 _PRECISE = 0.01  # largest half width of the correction of a gear ratio [1]
 _AS_WELL = 0.25  # tolerance of the logarithm of another factor that explains the same slope
-_SLOW = 1.0  # [Hz]
-_ENOUGH = 0.1  # least fraction of slow motion; with less, the whole motion is used
-_CORRELATED = 0.9
-_RIGID = 0.99  # with a higher correlation of motor and link, the deformation is negligible
 _UNLIKE = 5.0  # slope of q on theta that is too large for a soft spring
 _ALIKE = 1.5
-_AFTER_GEAR = 1.4  # largest ratio of motor to link motion if the encoder is after the gear
-_STIFF = 0.005  # largest ratio of deformation to motion if the motion determines the gear ratio
-_WHOLE = 0.002  # relative difference up to which a gear ratio is an integer
-
-
-@dataclass(frozen=True)
-class Slope:
-    """Slope of q on theta, from the slow motion if the log contains slow motion."""
-
-    value: float  # in the units of both
-    correlation: float
-    is_slow: bool
-
-    @property
-    def is_clear(self) -> bool:
-        """Whether motor and link move alike."""
-        return abs(self.correlation) >= _CORRELATED
-
-    @property
-    def is_rigid(self) -> bool:
-        """Whether the deformation is small compared with the motion."""
-        return abs(self.correlation) > _RIGID
-
-    @property
-    def rest(self) -> float:
-        """Standard deviation of the residual, relative to the motion."""
-        return math.sqrt(max(1 - self.correlation**2, 0.0))
-
-
-def slope_of(motions: Sequence[Array], T: float) -> Slope | None:
-    """Computes the slope of q on theta by total least squares; None if an angle does not move.
-
-    motions  theta and q of stretches without a gap [size: samples x 2]
-    T        time between samples [s]
-    """
-    if not motions:
-        return None
-    motions = [motion - motion.mean(axis=0) for motion in motions]
-    slow = [low_pass(motion, min(_SLOW, 0.1 / T), T) for motion in motions]
-    enough = [
-        bool(np.all(np.std(s, axis=0) > _ENOUGH * np.std(m, axis=0)))
-        for s, m in zip(slow, motions, strict=True)
-    ]
-    both = np.concatenate([s if e else m for s, m, e in zip(slow, motions, enough, strict=True)])
-    variances = np.var(both, axis=0)
-    if not np.all(variances > 0):
-        return None
-    # With both signals scaled to variance 1, the principal axis is the diagonal.
-    correlation = float(np.corrcoef(both.T)[0, 1])
-    value = float(np.sign(correlation) * np.sqrt(variances[1] / variances[0]))
-    return Slope(value, correlation, all(enough))
 
 
 def _clear_slope(view: LogView) -> Slope | None:
@@ -109,22 +53,6 @@ def _clear_slope(view: LogView) -> Slope | None:
     motions = [np.column_stack([piece.theta, piece.theta + piece.phi]) for piece in view.pieces]
     slope = slope_of(motions, view.T)
     return slope if slope is not None and slope.is_clear else None
-
-
-@dataclass(frozen=True)
-class Gear:
-    """Gear between two positions, by their motions."""
-
-    ratio: float  # turns of the motor per turn of the link
-    is_after: bool  # whether the motor's encoder is after the gear, so that both move alike
-    whole: float | None  # integer, if the motion determines it
-
-
-def gear_between(slope: Slope, turn_of_theta: float, turn_of_q: float) -> Gear:
-    """Computes the gear ratio of theta from a slope; one turn of each position, in its unit."""
-    ratio = turn_of_q / turn_of_theta / abs(slope.value)
-    is_after = 1 / _AFTER_GEAR < ratio < _AFTER_GEAR
-    return Gear(ratio, is_after, whole_gear(ratio, _WHOLE) if slope.rest < _STIFF else None)
 
 
 def still(view: LogView) -> list[str]:
@@ -184,7 +112,7 @@ class Positions:
         return [found for found in (self.scale, self.sign) if found is not None]
 
 
-def positions(view: LogView) -> Positions:
+def compare_positions(view: LogView) -> Positions:
     """Compares the motions of q and theta, and corrects scale and sign."""
     same = Positions(view, quick_fit(view))
     if not {"theta", "q"} <= set(view.samples.names):

@@ -57,7 +57,7 @@ class Inertia(Evidence):
 
 
 @dataclass(frozen=True)
-class Torque:
+class TorqueEvidence:
     """What the torque shows against a configuration; None for what it does not contradict."""
 
     gear: Evidence | None = None  # slope of q on theta by a slightly wrong gear ratio [1]
@@ -70,19 +70,19 @@ class Torque:
     inertia: Inertia | None = None
 
 
-def torque(positions: Positions) -> Torque:
+def compare_torque(positions: Positions) -> TorqueEvidence:
     """Asks all that the motion in the log allows to ask about the torque."""
     view, fit = positions.view, positions.fit
     if fit is None or not fit.has_stiffness:
-        return Torque()
+        return TorqueEvidence()
     if not positions.corrections and (gear := _gear(view, fit)) is not None:
-        return Torque(gear=gear)
+        return TorqueEvidence(gear=gear)
     if -np.sign(view.gamma) * fit.scores[LINEAR] < -1:
         return _negative_stiffness(view, fit)
     zero = _zero(view, fit)
     asymmetry = None if zero is not None else _asymmetry(view, fit)
     if view.has_sensor:
-        return Torque(zero=zero, asymmetry=asymmetry)
+        return TorqueEvidence(zero=zero, asymmetry=asymmetry)
     of_torque, of_encoder = _delay_of_torque(view, fit), _delay_of_encoder(view, fit)
     if of_torque is not None and of_encoder is not None:
         # A late link position has the same effect as an early torque, and the other way round.
@@ -90,7 +90,7 @@ def torque(positions: Positions) -> Torque:
             of_encoder = None
         else:
             of_torque = None
-    return Torque(
+    return TorqueEvidence(
         zero=zero,
         asymmetry=asymmetry,
         torque_delay=of_torque,
@@ -99,15 +99,17 @@ def torque(positions: Positions) -> Torque:
     )
 
 
-def _negative_stiffness(view: LogView, fit: QuickFit) -> Torque:
+def _negative_stiffness(view: LogView, fit: QuickFit) -> TorqueEvidence:
     """Finds a torque of wrong sign, or a wrong deformation if only the stiffness is negative."""
     port = "tau_e_sensor" if view.has_sensor else "tau"
     key = f"ports.{port}.sign"
     if view.has_sensor or fit.sign_of_motor < 0:
         other = Hypothesis(key, -view.configuration.ports[port].sign, "tau", -1.0)
-        return Torque(sign=Evidence(fit.stiffness, [other]))
+        return TorqueEvidence(sign=Evidence(fit.stiffness, [other]))
     keys = ("ports.theta.gear_ratio", "ports.q.gear_ratio", key)
-    return Torque(deformation=Evidence(fit.stiffness, [Hypothesis(each, None) for each in keys]))
+    return TorqueEvidence(
+        deformation=Evidence(fit.stiffness, [Hypothesis(each, None) for each in keys])
+    )
 
 
 _LEAST_GEAR = 2e-3
