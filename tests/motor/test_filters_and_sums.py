@@ -11,15 +11,14 @@ from sigmahat.motor.coherence import spectra
 from sigmahat.motor.equation import (
     MOTOR,
     Form,
-    Signals,
     equations,
     fit,
     left_out,
     rows,
-    units,
 )
 from sigmahat.motor.identify import _apart
 from sigmahat.motor.noise import low_pass
+from sigmahat.motor.signals import Signals, units
 
 
 @pytest.mark.parametrize(("frequency", "h"), [(5.0, 1e-3), (100.0, 1e-3), (1.2, 1e-2)])

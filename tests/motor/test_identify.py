@@ -28,10 +28,11 @@ from recorded_logs import (
 from regression_joint import Joint
 from sigmahat.fmi.model import installed_model
 from sigmahat.motor.coherence import coherent_range
-from sigmahat.motor.equation import Form, Signals, equations, fit
+from sigmahat.motor.equation import Form, equations, fit
 from sigmahat.motor.identify import identify
 from sigmahat.motor.noise import TorqueNoise
 from sigmahat.motor.quantities import Identified, Quantity
+from sigmahat.motor.signals import Signals
 from sigmahat.recording.configuration import read_configuration
 from sigmahat.recording.log import Array, LogInMemory
 from sigmahat.recording.units import convert

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from recorded_logs import Array
-from sigmahat.motor.equation import Form, Signals
+from sigmahat.motor.equation import Form
 from sigmahat.motor.motor_fit import fit_motor
+from sigmahat.motor.signals import Signals
 from sigmahat.motor.spring import knees
 
 T, GAMMA, K = 1e-3, 50.0, 400.0

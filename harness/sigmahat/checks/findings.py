@@ -5,7 +5,7 @@ from dataclasses import asdict, dataclass
 from enum import Enum
 from typing import Any
 
-Proposal = float | bool | str  # a value of a key, as it stands in the configuration
+from sigmahat.motor.hypotheses.hypothesis import Setting
 
 
 class Severity(str, Enum):
@@ -60,9 +60,9 @@ class Finding:
     unit: str  #: Unit of `measured` and `expected`; "" for a number without a unit.
     expected: float | None = None
     """The configured or the usual value, in `unit`; None if no such value exists."""
-    proposed: Proposal | None = None
+    proposed: Setting | None = None
     """A value of the key that agrees with the log; None if the log shows no such value."""
-    others: Sequence[tuple[str, Proposal | None]] = ()
+    others: Sequence[tuple[str, Setting | None]] = ()
     """Other keys that would explain the finding, each key with the value required."""
     about: str = ""
     """Detail of the kind: a port, a parameter of the FMU, or an item of the FMU's output doubt."""

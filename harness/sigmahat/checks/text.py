@@ -3,7 +3,8 @@
 import math
 from collections.abc import Mapping
 
-from sigmahat.checks.findings import Checked, Finding, Kind, Proposal, Severity
+from sigmahat.checks.findings import Checked, Finding, Kind, Severity
+from sigmahat.motor.hypotheses.hypothesis import Setting
 from sigmahat.result.data_sheet import WORDS
 
 TITLES = {
@@ -59,7 +60,7 @@ def _proposal(finding: Finding) -> str:
     return f"{first}; else look at {' or '.join(others)}" if others else first
 
 
-def _value(value: Proposal) -> str:
+def _value(value: Setting) -> str:
     if isinstance(value, str):
         return f'"{value}"'
     return str(value).lower() if isinstance(value, bool) else f"{value:.9g}"

@@ -7,6 +7,7 @@ from functools import partial
 import numpy as np
 
 from sigmahat.guess.words import Meaning, meaning
+from sigmahat.recording.column import period_of_counter, step_of_encoder
 from sigmahat.recording.log import Array, Log, LogError, check_together
 from sigmahat.recording.units import seconds, unwrap
 
@@ -18,16 +19,9 @@ _GAP = 3.0  # ratio of a time step to the usual step beyond which the step is a 
 _EPOCH = {"ns": 1e17, "us": 1e14, "ms": 1e11, "s": 1e8}  # from about 1973 on
 _FASTEST, _SLOWEST = 2e-5, 0.2  # usual time between rows of a log [s]
 _SLOW = 0.05  # largest time between rows with which a stiffness can be estimated well [s]
-TURN = {"rad": 2 * np.pi, "mrad": 2000 * np.pi, "deg": 360.0, "turn": 1.0}
-"""Size of one turn in each unit of angle."""
-_DISTINCT = 20000  # number of values that are searched for the step of an encoder
+_DISTINCT = 20000  # number of values that are searched for a signal with a few states
 _STATES = 8  # least number of distinct values of a signal that is no state or flag
 _STEPS = 5  # least number of steps between distinct values of an encoder
-PERIODS = (360.0, 2 * np.pi, *(2.0**k for k in range(8, 33)))
-"""Usual periods of a counter, in degrees, in radians and in counts."""
-_FEWEST_COUNTS = 100  # least number of encoder counts per turn
-_JUMP = 0.5  # least step at which a counter starts again, relative to the range of the values
-_SEEN = 0.02  # largest relative difference between a jump and a known period
 
 
 @dataclass(frozen=True)
@@ -57,72 +51,12 @@ def look_at(log: Log, name: str) -> tuple[Facts, Array]:
     steps = np.diff(finite)
     few = len(np.unique(finite[:_DISTINCT])) < min(_STATES, len(finite))
     integer = not few and bool(np.all(finite == np.round(finite)))
-    wrap = None if few else _wrap(steps, float(np.ptp(finite)))
+    wrap = None if few else period_of_counter(steps, float(np.ptp(finite)))
     increasing = float(np.mean(steps > 0)) if len(steps) else 0.0
     ends = float(finite.min()), float(finite.max())
-    step = 1.0 if integer else smallest_step(finite[:_DISTINCT], _STEPS)
+    step = 1.0 if integer else step_of_encoder(finite, _STEPS)
     facts = Facts(*ends, integer, not few, increasing, step, wrap)
     return facts, values if wrap is None else unwrap(values, wrap)[0]
-
-
-def counts_per_turn(facts: Facts, unit: str) -> int:
-    """Computes counts per turn of the encoder from the steps of a column; 0 without an encoder."""
-    counts = TURN[unit] / facts.step if unit in TURN else 0.0
-    return round(counts) if counts >= _FEWEST_COUNTS else 0
-
-
-def unit_of_steps(facts: Facts) -> str | None:
-    """Finds the unit in which the steps of an angle are a usual part of a turn, such as 1/4096."""
-    for unit in ("deg", "rad", "turn"):
-        counts = TURN[unit] / facts.step
-        n = round(counts)
-        usual = n and (n & (n - 1) == 0 or n % 100 == 0)
-        if usual and n >= _FEWEST_COUNTS and abs(counts / n - 1) < 1e-5:
-            return unit
-    return None
-
-
-def smallest_step(finite: Array, fewest: int) -> float:
-    """Finds the step of which almost all differences of the values are multiples; inf without such
-    a step, or with fewer steps between distinct values than `fewest`."""
-    distinct = np.unique(finite)
-    steps = np.diff(distinct)
-    steps = steps[steps > 1e-9 * max(np.ptp(distinct), 1e-300)] if len(steps) else steps
-    if not len(steps):
-        return np.inf
-    step = float(np.median(steps[steps < 1.5 * steps.min()]))
-    ratio = steps / step
-    even = np.abs(ratio - np.round(ratio)) < 0.05
-    near = ratio < 10  # rounding of text hides the remainder of a larger ratio
-    if np.count_nonzero(near) < fewest or np.mean(even[near]) <= 0.95:
-        return np.inf
-    # The mean of many steps is more exact than the last digits of the values.
-    return float(np.sum(steps[even]) / np.sum(np.round(ratio[even])))
-
-
-def _wrap(steps: Array, span: float) -> float | None:
-    """Finds the period of a counter that starts again: power of two, turn, or round number."""
-    size = np.abs(steps)
-    jumps = np.flatnonzero(size > _JUMP * span)
-    if span == 0 or not len(jumps):
-        return None
-    usual = float(np.quantile(size, 0.99 if len(jumps) < 0.01 * len(size) else 0.5))
-    if usual > 0.2 * size[jumps].min():
-        return None
-    inner = jumps[(jumps > 0) & (jumps < len(size) - 1)]
-    if not len(inner):
-        return None
-    # The motion continues during a jump: the jump and the expected step add up to a period.
-    coming = 0.5 * (steps[inner - 1] + steps[inner + 1])
-    coming[np.abs(coming) > 0.2 * span] = 0.0
-    period = float(np.median(np.abs(steps[inner] - coming)))
-    best = min((*PERIODS, 1.0), key=lambda each: abs(each / period - 1))
-    if abs(best / period - 1) < _SEEN:
-        return best
-    # Another period is accepted only if the motion continues during each jump.
-    noise = float(np.median(np.abs(np.diff(steps))))
-    on = -np.sign(steps[inner]) * coming > 3 * noise
-    return float(f"{period:.3g}") if len(inner) > 1 and on.all() else None
 
 
 def is_clock(meaning: Meaning, facts: Facts, values: Array) -> bool:

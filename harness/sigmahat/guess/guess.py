@@ -98,6 +98,6 @@ def guess_chosen(columns: Columns, names: Mapping[str, str | None]) -> dict[str,
     """
     moving = {each.name: each for each in columns.signals if len(each.window)}
     chosen = {port: moving[name] for port, name in names.items() if name in moving}
-    roles = chosen_roles(chosen, columns.window_T)
+    roles = chosen_roles(chosen)
     clocks = [column.clock for column in chosen.values()]
     return guess_ports(roles, columns, next(iter(clocks), None))

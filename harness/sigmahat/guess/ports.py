@@ -8,15 +8,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sigmahat.guess.columns import TURN, Column, Columns, counts_per_turn, unit_of_steps
+from sigmahat.guess.columns import Column, Columns
 from sigmahat.guess.relations import line, scale_of_derivative
 from sigmahat.guess.roles import Role, Roles
+from sigmahat.motor.hypotheses.hypothesis import unit_of_same_turn
+from sigmahat.motor.hypotheses.slope import Slope, gear_between, slope_of
+from sigmahat.recording.column import counts_of_steps, unit_of_steps
 from sigmahat.recording.log import Array
+from sigmahat.recording.units import TURN
 
-_AFTER_GEAR = 1.4  # largest ratio of motor to link motion if the encoder is after the gear
 _AS_FAR = 0.15  # largest relative difference between the motions of motor and link after the gear
-_WHOLE = 0.002  # relative difference up to which a gear ratio is rounded to an integer
-_STIFF = 0.005  # largest ratio of deformation to motion if the motion determines the gear ratio
 _APART = 4.0  # largest mean of the deformation with equal zeros, in standard deviations
 _RADIANS = 6.6  # largest magnitude of a joint position in rad; a larger position is in degrees
 _MILLI = 100.0  # largest magnitude of a current in A; a larger current is in mA
@@ -58,7 +59,8 @@ def guess_ports(roles: Roles, columns: Columns, main: str | None) -> dict[str, P
     for port, column in angles.items():
         _set_unit(ports[port], column, columns, port == "q")
     if len(angles) == 2:
-        _set_together(ports["theta"], ports["q"], *angles.values())
+        motor, link = angles["theta"], angles["q"]
+        _set_together(ports["theta"], ports["q"], motor, link, columns.window_T)
     if "tau" in ports:
         _set_torque(ports["tau"], roles)
     if "tau_e_sensor" in ports:
@@ -87,9 +89,9 @@ def _angle(column: Column, columns: Columns, is_link: bool) -> tuple[str, str]:
         return column.meaning.unit, ""
     if column.facts.integer:
         return "counts", "whole numbers"
-    unit = unit_of_steps(column.facts)
+    unit = unit_of_steps(column.facts.step)
     if unit:
-        return unit, f"by its steps, 1/{counts_per_turn(column.facts, unit)} turn"
+        return unit, f"by its steps, 1/{counts_of_steps(column.facts.step, unit)} turn"
     unit = _unit_by_velocity(column, columns.signals, columns.window_T)
     if unit:
         return unit, "by its velocity"
@@ -121,7 +123,7 @@ def _unit_by_velocity(column: Column, signals: Sequence[Column], T: float) -> st
 
 def _set_unit(port: PortGuess, column: Column, columns: Columns, is_link: bool) -> None:
     port.unit, how = _angle(column, columns, is_link)
-    port.steps = counts_per_turn(column.facts, port.unit)
+    port.steps = counts_of_steps(column.facts.step, port.unit)
     if how:
         port.notes["unit"] = how
     wrap, (least, most) = column.facts.wrap, _SINGLE_TURN
@@ -130,22 +132,22 @@ def _set_unit(port: PortGuess, column: Column, columns: Columns, is_link: bool) 
         port.notes["counts_per_turn"] = "CHECK: the counter starts again after this number"
 
 
-def _set_together(theta: PortGuess, q: PortGuess, motor: Column, link: Column) -> None:
+def _set_together(theta: PortGuess, q: PortGuess, motor: Column, link: Column, T: float) -> None:
     """Guesses gear, sign and zeros of both positions, from the common motion of motor and link."""
-    fitted = line(motor.window, link.window)
-    if fitted.slope == 0:
+    slope = slope_of([np.column_stack([motor.window, link.window])], T)
+    if slope is None:
         return
     if _is_vague(theta):
-        _set_unit_by_other(theta, q, 1 / abs(fitted.slope))
+        _set_unit_by_other(theta, q, 1 / abs(slope.value))
     elif _is_vague(q):
-        _set_unit_by_other(q, theta, abs(fitted.slope))
-    _set_gear(theta, q, 1 / abs(fitted.slope), fitted.rest)
+        _set_unit_by_other(q, theta, abs(slope.value))
+    _set_gear(theta, q, slope)
     ratio = _ratio(theta, q)
-    if fitted.slope < 0:
+    if slope.value < 0:
         q.sign, q.notes["sign"] = -1, "it moves against the motor"
-    slope = math.copysign(ratio or abs(fitted.slope), fitted.slope)
-    deformation = link.window - slope * motor.window
-    spread = max(fitted.rest * float(np.std(link.window)), float(np.std(deformation)))
+    of_motor = math.copysign(ratio or abs(slope.value), slope.value)
+    deformation = link.window - of_motor * motor.window
+    spread = max(slope.rest * float(np.std(link.window)), float(np.std(deformation)))
     if abs(float(np.mean(deformation))) > _APART * spread:
         for port, column in ((theta, motor), (q, link)):
             port.zero = _mean(column)
@@ -156,37 +158,30 @@ def _is_vague(port: PortGuess) -> bool:
     return port.notes.get("unit", "").startswith("CHECK")
 
 
-def _set_unit_by_other(port: PortGuess, other: PortGuess, slope: float) -> None:
-    """Guesses the unit of a position from the other position; slope: ratio of both values."""
+def _set_unit_by_other(port: PortGuess, other: PortGuess, ratio: float) -> None:
+    """Guesses the unit of a position from the other position; ratio: of both values."""
     if other.unit in TURN:
-        same = [unit for unit in TURN if abs(slope * TURN[other.unit] / TURN[unit] - 1) < _AS_FAR]
-        port.unit = same[0] if same else other.unit
+        port.unit = unit_of_same_turn(other.unit, ratio, _AS_FAR) or other.unit
         port.notes["unit"] = "CHECK: from the other position, which turns as far"
 
 
-def _set_gear(theta: PortGuess, q: PortGuess, slope: float, rest: float) -> None:
-    """Sets the gear ratio if both units are known and the joint is stiff; else adds a note.
-
-    slope  ratio of the values of theta to the values of q
-    rest   standard deviation of the residual of this slope, relative to q
-    """
+def _set_gear(theta: PortGuess, q: PortGuess, slope: Slope) -> None:
+    """Sets the gear ratio if both units are known and the joint is stiff; else adds a note."""
     if theta.unit in TURN and q.unit in TURN:
-        gear = slope * TURN[q.unit] / TURN[theta.unit]
-        if 1 / _AFTER_GEAR < gear < _AFTER_GEAR:
+        gear = gear_between(slope, TURN[theta.unit], TURN[q.unit])
+        if gear.is_after:
             note = "it moves as far as the link, so it is measured after the gear"
         else:
-            whole = max(round(gear), 1)
-            sure = rest < _STIFF and abs(gear / whole - 1) < _WHOLE
-            theta.gear_ratio, theta.moves = float(whole) if sure else None, gear
-            first = "CHECK" if sure else "FILL IN"
-            note = f"{first}: the motor moves {gear:.4g} times as far as the link"
+            theta.gear_ratio, theta.moves = gear.whole, gear.ratio
+            first = "FILL IN" if gear.whole is None else "CHECK"
+            note = f"{first}: the motor moves {gear.ratio:.4g} times as far as the link"
     else:
         theta.gear_ratio = None
         note = "FILL IN: 1 if theta is measured after the gear"
         if q.unit in TURN:
-            theta.moves = slope * TURN[q.unit]
+            theta.moves = TURN[q.unit] / abs(slope.value)
         elif theta.unit == "counts" and q.unit == "counts" and q.counts_per_turn:
-            theta.moves = slope * q.counts_per_turn
+            theta.moves = q.counts_per_turn / abs(slope.value)
         if theta.moves is not None:
             note = f"FILL IN: gear_ratio times counts_per_turn is about {theta.moves:.4g}"
     theta.notes["gear_ratio"] = note

@@ -1,4 +1,4 @@
-"""Finds relations between columns: copies, derivatives, and the motor equation."""
+"""Finds relations between columns: lines, copies, and derivatives."""
 
 import math
 from collections.abc import Sequence
@@ -13,7 +13,6 @@ _SMOOTH = 15  # number of samples in the window of a differentiation by polynomi
 _INNER = slice(_SMOOTH // 2, -(_SMOOTH // 2))  # samples with a complete window
 _DERIVATIVE = 0.97  # least correlation of a column with the derivative of another column
 _COPY = 1e-4  # largest relative residual of a column that is a copy in another unit
-_BLOCKS = 8
 
 
 @dataclass(frozen=True)
@@ -75,45 +74,3 @@ def scale_of_derivative(x: Array, v: Array, T: float) -> float | None:
         return None
     fitted = line(smooth(x, T, 1), smooth(v))
     return fitted.slope if fitted.correlation**2 > _DERIVATIVE**2 else None
-
-
-@dataclass(frozen=True)
-class Drive:
-    """Relation between a torque and the motion of two positions, by the motor equation (3)."""
-
-    explained: float  # explained fraction of the variance of the torque [1]
-    sign: int  # 1 if the torque drives the motion, -1 if its sign is reversed, 0: not sure
-
-
-def drive(x: Array, y: Array, tau: Array, T: float) -> Drive:
-    """Relates a torque to two positions, whatever their units are; all [size: samples].
-
-    tau = B x'' + D x' + C sign(x') + K (x - y) for a linear spring, with only the part of y that is
-    not proportional to x. The equation contains the acceleration of the motor, not of the link.
-    Therefore the equation explains the torque better if x is the motor position. The sign of the
-    torque follows from friction, which dissipates power of the motor on average. If a hand moves
-    the link, the deformation follows the velocity, and `sign` is 0.
-    """
-    if len(x) < 8 * _SMOOTH or not np.ptp(x) or not np.ptp(tau):
-        return Drive(0.0, 0)
-    fitted = line(x, y)
-    behind = smooth(x - (y - fitted.offset) / fitted.slope) if fitted.slope else 0 * x[_INNER]
-    velocity = smooth(x, T, 1)
-    coulomb = np.tanh(velocity / (0.05 * np.abs(velocity).max() + 1e-300))
-    position, one = x[_INNER] - x.mean(), np.ones_like(velocity)
-    parts = np.column_stack([smooth(x, T, 2), velocity, coulomb, position, behind, one])
-    parts /= np.linalg.norm(parts, axis=0) + 1e-300
-    torque = smooth(tau)
-    factors = np.linalg.lstsq(parts, torque, rcond=1e-10)[0]
-    spread = float(np.var(torque))
-    explained = 1 - float(np.var(torque - parts @ factors)) / spread if spread else 0.0
-    if _sign(-behind * velocity) > 0:
-        return Drive(explained, 0)
-    return Drive(explained, _sign((torque - torque.mean()) * velocity))
-
-
-def _sign(power: Array) -> int:
-    """Returns the sign of the mean; 0 if means of time blocks show no significant sign."""
-    means = np.array([block.mean() for block in np.array_split(power, _BLOCKS)])
-    error = float(means.std(ddof=1)) / np.sqrt(len(means))
-    return int(np.sign(means.mean())) if abs(means.mean()) > 3 * error else 0

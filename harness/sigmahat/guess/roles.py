@@ -7,8 +7,9 @@ from itertools import permutations
 import numpy as np
 
 from sigmahat.guess.columns import Column
-from sigmahat.guess.relations import Drive, derivatives, drive, is_copy, line
+from sigmahat.guess.relations import derivatives, is_copy, line
 from sigmahat.guess.relations import scale_of_derivative as scale_of
+from sigmahat.motor.hypotheses.drive import Drive, drive
 
 # Points of a column as a candidate for a port.
 _SAID, _SUGGESTED, _QUANTITY = 4.0, 2.0, 1.0
@@ -49,11 +50,11 @@ def assign(columns: Sequence[Column], T: float) -> Roles:
     ports |= _setting(rest, ports)
     taken |= {role.column.name for role in ports.values()}
     ports |= _torques([each for each in rest if each.name not in taken], ports, T)
-    found = _drive(ports, T)
+    found = _drive(ports)
     swapped = _swapped(ports)
-    if swapped and 1 - _drive(swapped, T).explained < _BETTER * (1 - found.explained):
+    if swapped and 1 - _drive(swapped).explained < _BETTER * (1 - found.explained):
         ports = swapped
-        found = _drive(ports, T)
+        found = _drive(ports)
     order = ("theta", "q", "theta_c", "tau", "tau_e_sensor")
     return Roles({port: ports[port] for port in order if port in ports}, found)
 
@@ -80,10 +81,10 @@ def _named(column: Column) -> float:
     return points + _COMPUTED * meaning.computed
 
 
-def chosen_roles(columns: Mapping[str, Column], T: float) -> Roles:
-    """Creates the roles of columns that the user has chosen, by port; T as for assign()."""
+def chosen_roles(columns: Mapping[str, Column]) -> Roles:
+    """Creates the roles of columns that the user has chosen, by port."""
     ports = {port: Role(column, "chosen") for port, column in columns.items()}
-    return Roles(ports, _drive(ports, T))
+    return Roles(ports, _drive(ports))
 
 
 def _swapped(ports: Mapping[str, Role]) -> dict[str, Role]:
@@ -97,11 +98,11 @@ def _swapped(ports: Mapping[str, Role]) -> dict[str, Role]:
     return {**ports, "theta": Role(q, f"{why} motor"), "q": Role(theta, f"{why} link")}
 
 
-def _drive(ports: Mapping[str, Role], T: float) -> Drive:
+def _drive(ports: Mapping[str, Role]) -> Drive:
     if not {"theta", "q", "tau"} <= ports.keys():
         return Drive(0.0, 0)
     theta, q, tau = (ports[port].column.window for port in ("theta", "q", "tau"))
-    return drive(theta, q, tau, T)
+    return drive(theta, q, tau)
 
 
 def _positions(columns: Sequence[Column], T: float) -> list[Column]:
@@ -206,7 +207,7 @@ def _silent_torque(
     """Finds the unnamed column that the motion explains best as a torque."""
     theta, q = (ports[port].column.window for port in ("theta", "q"))
     explained = [
-        (drive(theta, q, each.window, T).explained, each)
+        (drive(theta, q, each.window).explained, each)
         for each in columns
         if each.meaning.quantity is None
         and abs(line(theta, each.window).correlation) < _SAME

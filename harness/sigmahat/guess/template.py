@@ -10,13 +10,13 @@ from tomlkit.items import Table
 
 from sigmahat.files.templates import environment
 from sigmahat.fmi.model import installed_model
-from sigmahat.guess.columns import TURN, Column, Columns, likely_unit
+from sigmahat.guess.columns import Column, Columns, likely_unit
 from sigmahat.guess.guess import JointGuess
 from sigmahat.guess.ports import PortGuess
 from sigmahat.recording import configuration
 from sigmahat.recording.log import Log
 from sigmahat.recording.several_joints import together
-from sigmahat.recording.units import seconds
+from sigmahat.recording.units import TURN, seconds
 
 MEANINGS = {
     "theta": "principal motor, after its gear",

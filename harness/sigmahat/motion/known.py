@@ -4,8 +4,8 @@ import numpy as np
 
 from sigmahat.motion.design import NOISE, Sensors
 from sigmahat.motion.joints_of_log import Joint, Limits, Ranges
-from sigmahat.motor.equation import signals_of
 from sigmahat.motor.noise import low_pass
+from sigmahat.motor.signals import signals_of
 from sigmahat.recording.configuration import Configuration
 from sigmahat.recording.estimator_parameters import all_parameters
 from sigmahat.recording.log import Log, LogError

@@ -1,1 +1,5 @@
-"""Motor data, polynomial orders and noise, identified off line from a log."""
+"""The equation of a motor on a log: data of the motor, and hypotheses about a configuration.
+
+`identify` asks for the values, `check` whether another configuration fits better, and `init` which
+configuration fits.
+"""

@@ -6,13 +6,16 @@ In a regressor, these errors would make the stiffness too small.
 
 import itertools
 import math
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from sigmahat.motor import equation
-from sigmahat.motor.equation import MOTOR, Equations, Form, Signals
+from sigmahat.motor.equation import MOTOR, Equations, Form
+from sigmahat.motor.log_view import LogView
 from sigmahat.motor.noise import TorqueNoise
+from sigmahat.motor.signals import Signals
 from sigmahat.recording.log import Array
 
 _FIRST = 5.0  # low pass of the fit from which the spectra are computed [Hz]
@@ -22,6 +25,29 @@ _COHERENT = 0.5
 _LARGER = 4.0  # least ratio of the power of the deformation to the power from the torque noise
 _BUTTERWORTH = 1.11  # noise bandwidth of the low pass divided by its frequency
 _HIDDEN = 0.5  # least ratio of the rounding variance to the residual variance of the deformation
+
+
+@dataclass(frozen=True)
+class PassBand:
+    """Frequencies at which a log shows the motor equation."""
+
+    noise: TorqueNoise
+    coherent: float  # frequency above which the deformation is noise [Hz]; inf without noise
+
+    def low_pass(self, T: float) -> float:
+        """Returns the low pass of the equations [Hz], for samples T apart [s]."""
+        return min(replace(self.noise, T=T).bandwidth, self.coherent)
+
+
+def pass_band(view: LogView, has_sensor: bool) -> PassBand:
+    """Finds the frequencies at which the longest stretch of a log shows the motor equation.
+
+    has_sensor  whether a torque sensor replaces the spring or the motor
+    """
+    longest = view.longest
+    noise = TorqueNoise.of(longest.tau, longest.theta, view.parameters, view.T)
+    coherent = math.inf if has_sensor else coherent_range(longest, view.gamma, noise)
+    return PassBand(noise, coherent)
 
 
 def coherent_range(piece: Signals, gamma: float, noise: TorqueNoise) -> float:
@@ -36,8 +62,8 @@ def coherent_range(piece: Signals, gamma: float, noise: TorqueNoise) -> float:
         return math.inf
     slow = Form(min(_FIRST, highest), min(_FIRST, highest))
     system = equation.equations([piece], T, gamma, slow)
-    found = equation.fit(system)
-    p, motor = np.array(list(found.value.values())), slice(len(MOTOR))
+    p = np.array(list(equation.fit(system).value.values()))
+    motor = slice(len(MOTOR))
     rest = slice(len(MOTOR), None)
     torques, springs = [], []
     for even in equation.rows(piece, T, gamma, Form(highest, highest), system.units):
@@ -92,8 +118,7 @@ def is_hidden(system: Equations, f_0: float, T: float, noise: float, known: bool
     known   whether the inertia is known
     """
     names = [*MOTOR[int(known) :], *equation.eta(2, 1)]  # the spring is a constant and a slope
-    own = system.only(names)
-    R = equation.factor(own.R.reshape(-1, own.R.shape[2]))
+    R = system.only(names).factor()
     others, spring = R[:, :-2], R[:, -2]  # the last one is y
     left = spring - others @ np.linalg.lstsq(others, spring, rcond=None)[0]
     variance = float(left @ left) / int(system.rows.sum()) * system.units[0] ** 2

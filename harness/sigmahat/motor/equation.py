@@ -21,8 +21,8 @@ not grow with the number of samples, and a fit takes much less time than the fil
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -30,48 +30,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sigmahat.estimator.powers import powers_of_phi
-from sigmahat.fmi.model import Value
 from sigmahat.motor.noise import SETTLED, low_pass
+from sigmahat.motor.signals import BLOCK, EDGE, Signals, units
 from sigmahat.recording.log import Array
-from sigmahat.recording.resampling import Samples, stretches
 
 MOTOR = ("B", "D_theta", "tau_coulomb")  # first columns, which describe the motor
 COULOMB_VELOCITY = 0.02  # v_s, width of the sign change of the friction [rad/s]
 WIDEST = 0.1  # highest low pass of the velocity, in sampling frequencies
+_VELOCITY = 2.5  # ratio of the low pass of the velocity to the low pass of the equations
 CONSTANT = "constant"  # name of the column of c
-_BLOCK = 0.25  # duration of a block; errors in different blocks count as independent [s]
 _WINDOW = 1 << 14  # approximate number of rows that are filtered at a time
-_EDGE = 0.1  # duration left out at both ends of a stretch, where the filter has not settled [s]
+MUCH = 0.7  # largest ratio of the squared errors, after to before, if a change explains a log
 _PARTS = 8  # number of parts of a log for the cross-validation
-_LEAST = 40  # least number of samples of a stretch for the filters
-
-
-@dataclass(frozen=True)
-class Signals:
-    """Signals in a stretch of a log without gaps; arrays of one size, samples T apart."""
-
-    theta: Array
-    phi: Array
-    set_point: Array
-    tau: Array
-    tau_e: Array | None  # torque of the sensor, to identify the torque constant
-    held: bool = False  # whether a drive holds tau until the next sample
-    extra: Array | None = None
-    """More regressors, [size: samples x columns]. These regressors are filtered like the torque,
-    and are also used as instruments."""
-
-    def __getitem__(self, kept: slice) -> Signals:
-        """Selects samples of all signals."""
-        signals = {each.name: getattr(self, each.name) for each in fields(self)}
-        arrays = {name: x[kept] for name, x in signals.items() if isinstance(x, np.ndarray)}
-        return replace(self, **arrays, held=self.held)
-
-    def with_acting_torque(self) -> Signals:
-        """Replaces a held torque by the mean of the torques before and after each sample."""
-        if not self.held:
-            return self
-        before = np.append(self.tau[:1], self.tau[:-1])
-        return replace(self, tau=(self.tau + before) / 2, held=False)
 
 
 class Stribeck(NamedTuple):
@@ -96,6 +66,11 @@ class Form:
     """Whether there is friction that is proportional to the magnitude of the deformation."""
     stribeck: tuple[Stribeck, ...] = ()  # additional friction in slow motion
     delay: bool = False  # whether a delay is estimated: tau(t - delay) = tau(t) - delay tau'(t)
+
+    @staticmethod
+    def of_low_pass(f_0: float, T: float, n: int = 1, m: int = 1, symmetric: bool = True) -> Form:
+        """Creates a form for samples T apart [s], with the velocity less filtered than the rest."""
+        return Form(f_0, min(_VELOCITY * f_0, WIDEST / T), n, m, symmetric)
 
     def with_all_powers(self) -> Form:
         """Returns the form with odd and even powers of the deformation, up to a similar power."""
@@ -164,15 +139,18 @@ class Equations:
 
     def in_parts(self, parts: int) -> Equations:
         """Combines the blocks of the equations to fewer, longer blocks."""
-        every = [each for each in self.parts(parts) if len(each.rows)]
-        columns = self.R.shape[2]
+        filled = [part for part in self.parts(parts) if len(part.rows)]
         return replace(
             self,
-            ZX=np.array([each.ZX.sum(axis=0) for each in every]),
-            Zy=np.array([each.Zy.sum(axis=0) for each in every]),
-            R=np.array([factor(each.R.reshape(-1, columns)) for each in every]),
-            rows=np.array([each.rows.sum() for each in every]),
+            ZX=np.array([part.ZX.sum(axis=0) for part in filled]),
+            Zy=np.array([part.Zy.sum(axis=0) for part in filled]),
+            R=np.array([part.factor() for part in filled]),
+            rows=np.array([part.rows.sum() for part in filled]),
         )
+
+    def factor(self) -> Array:
+        """Returns the QR factor of all blocks together."""
+        return factor(self.R.reshape(-1, self.R.shape[2]))
 
 
 def factor(X: Array) -> Array:
@@ -188,15 +166,15 @@ def equations(pieces: Sequence[Signals], T: float, gamma: float, form: Form) -> 
     of_polynomial = units(pieces)
     parts = []
     for piece in pieces:
-        for each in rows(piece, T, gamma, form, of_polynomial):
-            y, X, Z = (_in_blocks(x, each.place, T) for x in (each.y[..., None], each.X, each.Z))
+        for part in rows(piece, T, gamma, form, of_polynomial):
+            y, X, Z = (_in_blocks(x, part.place, T) for x in (part.y[..., None], part.X, part.Z))
             ZX, Zy = Z.swapaxes(1, 2) @ X, (Z.swapaxes(1, 2) @ y)[..., 0]
-            of_block = np.bincount(each.place // _block(T) - each.place[0] // _block(T))
+            of_block = np.bincount(part.place // _block(T) - part.place[0] // _block(T))
             parts.append((ZX, Zy, factor(np.concatenate([X, y], axis=2)), 2 * of_block))
     names = form.names(pieces[0].tau_e is not None)
     if pieces[0].extra is not None:
         names += [extra(i) for i in range(pieces[0].extra.shape[1])]
-    ZX, Zy, R, number = (np.concatenate(each) for each in zip(*parts, strict=True))
+    ZX, Zy, R, number = (np.concatenate(blocks) for blocks in zip(*parts, strict=True))
     return Equations(ZX, Zy, R, number, names, of_polynomial)
 
 
@@ -218,7 +196,7 @@ def rows(
     Samples around the blocks are filtered too, so that the filters have settled in the blocks.
     """
     count, long = len(piece.theta) // 2, _block(T)
-    edge = round(_EDGE / (2 * T))
+    edge = round(EDGE / (2 * T))
     around = math.ceil(SETTLED / (form.f_0 * 2 * T)) + 4
     step = max(1, _WINDOW // long) * long
     for begin in range(0, count - edge, step):
@@ -231,13 +209,13 @@ def rows(
             _half(part[half::2], velocity[half::2], direction[half::2], 2 * T, gamma, form, units)
             for half in (0, 1)
         ]
-        y, X = (np.stack(each) for each in zip(*halves, strict=True))
+        y, X = (np.stack(both) for both in zip(*halves, strict=True))
         Z = np.empty_like(X)
         Z[0, 1:], Z[0, 0] = (X[1, 1:] + X[1, :-1]) / 2, X[1, 0]  # at the times of even samples
         Z[1, :-1], Z[1, -1] = (X[0, 1:] + X[0, :-1]) / 2, X[0, -1]
         if piece.extra is not None:
-            own = X.shape[2] - piece.extra.shape[1]
-            Z[..., own:] = X[..., own:]
+            first_extra = X.shape[2] - piece.extra.shape[1]
+            Z[..., first_extra:] = X[..., first_extra:]
         place = np.arange(max(begin, edge), min(begin + step, count - edge))
         inner = place - first
         yield Rows(y[:, inner], X[:, inner], Z[:, inner], place)
@@ -245,7 +223,7 @@ def rows(
 
 def _block(T: float) -> int:
     """Returns the number of even samples in a block."""
-    return round(_BLOCK / (2 * T))
+    return round(BLOCK / (2 * T))
 
 
 def _in_blocks(values: Array, place: NDArray[np.intp], T: float) -> Array:
@@ -271,41 +249,6 @@ def eta(n: int, m: int) -> list[str]:
 def extra(i: int) -> str:
     """Returns the name of column i of Signals.extra."""
     return f"extra[{i}]"
-
-
-def shortest(T: float) -> int:
-    """Returns the least number of samples of a stretch."""
-    return max(round((2 * _EDGE + 2 * _BLOCK) / T), _LEAST)
-
-
-def signals_of(
-    samples: Samples, every: Mapping[str, Value], torque: str = "tau", sensor: bool = False
-) -> Iterator[Signals]:
-    """Yields the stretches of a log without a gap, if long enough; none without q and torque.
-
-    every   parameters of the estimator
-    torque  port of the torque; tau_e_sensor divided by the gear ratio replaces -tau
-    sensor  whether the sensor torque is kept in addition to the motor torque
-    """
-    columns = dict(zip(samples.names, samples.values.T, strict=True))
-    if not {"q", torque} <= columns.keys():
-        return
-    scale, offset = float(every["setPoint.scale"]), float(every["setPoint.offset"])
-    for first, last in zip(*stretches(np.isfinite(samples.values).all(axis=1)), strict=True):
-        if last - first < shortest(samples.T):
-            continue
-        part = {name: np.ascontiguousarray(each[first:last]) for name, each in columns.items()}
-        nothing: Array = np.zeros(last - first)
-        theta = part.get("theta", nothing)
-        measured = part[torque]
-        yield Signals(
-            theta=theta,
-            phi=part["q"] - theta,
-            set_point=offset + scale * part.get("theta_c", nothing),
-            tau=measured if torque == "tau" else -measured / float(every["motor.gamma"]),
-            tau_e=part["tau_e_sensor"] if sensor else None,
-            held=bool(every["torque.held"]) and torque == "tau",
-        )
 
 
 def _half(
@@ -362,20 +305,6 @@ def _direction(velocity: Array, v_s: float) -> Array:
     near = np.concatenate([mean[:1], mean, mean[-1:]])
     wider: Array = (near[:-2] + 2 * mean + near[2:]) / 4  # for every second sample
     return wider
-
-
-def units(pieces: Sequence[Signals]) -> tuple[float, float]:
-    """Returns the divisors of deformation and set-point in the polynomial [rad, 1].
-
-    The divisors are the largest magnitudes in all stretches, so that powers are of order 1.
-    """
-    phi = max(float(np.max(np.abs(piece.phi))) for piece in pieces)
-    set_point = max(float(np.max(np.abs(piece.set_point))) for piece in pieces)
-    return phi or 1.0, set_point or 1.0
-
-
-def set_point_moves(pieces: Sequence[Signals]) -> bool:
-    return any(np.ptp(piece.set_point) > 0 for piece in pieces)
 
 
 def _first(x: Array, h: float) -> Array:
@@ -439,9 +368,26 @@ def fit(e: Equations) -> Fit:
     )
 
 
+def residual(e: Equations) -> float:
+    """Computes the sum of squared errors of ordinary least squares, also for equations whose
+    regressors depend on each other. Noise of the regressors biases its coefficients, see above."""
+    R = e.factor()
+    X, y = R[:, :-1], R[:, -1]
+    X = X / (np.linalg.norm(X, axis=0) + 1e-300)
+    left = y - X @ np.linalg.lstsq(X, y, rcond=1e-10)[0]
+    return float(left @ left)
+
+
 def is_worse(one: Fit, other: Fit) -> bool:
     """Returns whether the squared errors of `one` are significantly larger than of `other`."""
     return is_more(one.squares - other.squares)
+
+
+def explains(before: Fit, after: Fit, most: float = MUCH) -> bool:
+    """Returns whether the squared errors after a change are significantly smaller than before, and
+    at most the given part of them. A significant difference alone is not sufficient: with
+    unmodelled friction, nearly every change is significant."""
+    return after.error < most * before.error and is_worse(before, after)
 
 
 def is_more(differences: Array) -> bool:
@@ -462,20 +408,30 @@ def left_out(e: Equations) -> Array:
     scale[scale == 0] = 1.0
     A, b = e.ZX / np.outer(scale, scale), e.Zy / scale
     others = zip(A.sum(axis=0) - A, b.sum(axis=0) - b, strict=True)
-    fits = [np.linalg.lstsq(*each, rcond=1e-12)[0] / scale for each in others]
+    fits = [np.linalg.lstsq(*sums, rcond=1e-12)[0] / scale for sums in others]
     return np.array([e.errors(p)[i] / e.rows[i] for i, p in enumerate(fits)])
 
 
-def choose(system: Equations, form: Form) -> tuple[Form, Array]:
+@dataclass(frozen=True)
+class Choice:
+    """The orders of the polynomial with the best predictions."""
+
+    form: Form
+    equations: Equations  # with these orders
+    errors: Array  # mean square error of each eighth of the log after a fit to the others
+
+
+def choose(system: Equations, form: Form) -> Choice:
     """Chooses the orders with the least error in a cross-validation over eighths of the log, up to
-    the orders of the form. Returns form and errors from left_out(); system: equations of the form.
+    the orders of the form; system: equations of the form.
     """
-    system = system.in_parts(_PARTS)
+    parts = system.in_parts(_PARTS)
     others = [name for name in system.names if name not in eta(form.n, form.m)]
     errors = {
-        (n, m): left_out(system.only([*others, *eta(n, m)]))
+        (n, m): left_out(parts.only([*others, *eta(n, m)]))
         for n in range(1, form.n + 1)
         for m in range(1, form.m + 1)
     }
-    n, m = min(errors, key=lambda each: float(np.mean(errors[each])))
-    return replace(form, n=n, m=m), errors[n, m]
+    n, m = min(errors, key=lambda orders: float(np.mean(errors[orders])))
+    chosen = system.only([*others, *eta(n, m)])
+    return Choice(replace(form, n=n, m=m), chosen, errors[n, m])

@@ -11,14 +11,17 @@ from dataclasses import replace
 import numpy as np
 
 from sigmahat.estimator.estimator import Estimator
-from sigmahat.fmi.model import Value, installed_model
-from sigmahat.motor.coherence import coherent_range, is_hidden
-from sigmahat.motor.equation import Signals, set_point_moves, shortest, signals_of
+from sigmahat.fmi.model import Value
+from sigmahat.motor.coherence import is_hidden, pass_band
+from sigmahat.motor.log_view import first_part
 from sigmahat.motor.motor_fit import KnownInertia, MotorFit, fit_motor
-from sigmahat.motor.noise import TorqueNoise, count, is_only_noise, low_pass
-from sigmahat.motor.quantities import WIDE, Identified, Quantity
+from sigmahat.motor.noise import count, is_only_noise, low_pass
+from sigmahat.motor.quantities import Identified, Quantity
+from sigmahat.motor.signals import Signals, set_point_moves, shortest
 from sigmahat.motor.spring import (
     change_of_spring,
+    covered,
+    is_off,
     knees,
     plain_equations,
     with_two_springs,
@@ -26,16 +29,14 @@ from sigmahat.motor.spring import (
 from sigmahat.recording.configuration import Configuration
 from sigmahat.recording.estimator_parameters import parameters
 from sigmahat.recording.log import Array, Log, LogError
-from sigmahat.recording.resampling import Samples, sample, stretches
+from sigmahat.recording.resampling import Samples, stretches
 
-_LONGEST = 600.0  # [s] of a log that are used
 _FEWEST = 1000  # least number of samples kept from the longest stretch of a slow motion
 _RESOLVED = 0.07
 """Largest bandwidth of the estimator, in sampling frequencies. For joints that are sampled at 250
 Hz, other values reduce the coverage of the intervals. A value of 0.05 is too slow. With 0.15,
 signals are not linear between samples."""
 _V_A = tuple(10.0**e for e in np.arange(5.0, 13.1, 0.5))
-_MATTERS = 0.05  # smallest relevant error of zero, relative to the range of the deformation
 _V_A_TICKS = 10000
 _NO_TORQUE = (
     "the torque of the motor is only noise: such a log does not show its inertia and friction, and "
@@ -88,27 +89,24 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
     """
     _check(configuration, torque_constant)
     start = parameters(configuration)
-    every = installed_model("StiffnessEstimator").parameters(start)
-    samples = _beginning(sample(log, configuration, float(every["samplePeriod"])))
-    T, gamma = samples.T, float(every["motor.gamma"])
-    pieces = list(signals_of(samples, every, sensor=torque_constant)) if T <= _SLOWEST else []
-    if not pieces:
+    view = first_part(log, configuration, sensor=torque_constant)
+    samples, pieces, T, gamma = view.samples, view.pieces, view.T, view.gamma
+    if T > _SLOWEST or not pieces:
         raise LogError(f"{log.path}: {_unusable(samples, shortest(T) * T)}")
-    longest = max(pieces, key=lambda piece: len(piece.theta))
-    noise = TorqueNoise.of(longest.tau, longest.theta, every, T)
+    band = pass_band(view, has_sensor=torque_constant)
+    noise = band.noise
     bandwidth = noise.bandwidth
     symmetric = bool(start.get("rls.symmetric", False))
-    coherent = math.inf if torque_constant else coherent_range(longest, gamma, noise)
-    apart = _apart(pieces, count(every))
+    apart = _apart(pieces, count(view.parameters))
     h = apart * T
-    thinned = [each.with_acting_torque()[::apart] for each in pieces]
-    inertia = _known_inertia(every, configuration)
-    f_0 = min(replace(noise, T=h).bandwidth, coherent)
+    thinned = [piece.with_acting_torque()[::apart] for piece in pieces]
+    inertia = KnownInertia.of(view)
+    f_0 = band.low_pass(h)
     change, hidden = None, False
     if not torque_constant:
         plain = plain_equations(thinned, h, gamma, f_0)
         change = change_of_spring(plain, thinned)
-        rounding = sum(count(every, encoder) ** 2 / 12 for encoder in ("theta", "q"))
+        rounding = sum(count(view.parameters, encoder) ** 2 / 12 for encoder in ("theta", "q"))
         hidden = is_hidden(plain, f_0, h, rounding, known=inertia is not None)
     springs = thinned if change is None else with_two_springs(thinned, change)
     motor = fit_motor(springs, h, gamma, symmetric, f_0, inertia)
@@ -117,8 +115,8 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
     changed = None if change is None else change * h
     if no_torque or hidden:
         quantities = {
-            name: Quantity(math.nan, math.inf, each.unit, determined=False)
-            for name, each in quantities.items()
+            name: Quantity(math.nan, math.inf, quantity.unit, determined=False)
+            for name, quantity in quantities.items()
         }
     if quantities["B"].determined:  # the first bandwidth was computed with the configured B
         bandwidth = replace(noise, inertia=quantities["B"].value * abs(gamma)).bandwidth
@@ -134,9 +132,9 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
         m=motor.polynomial.m,
         tau_variance=noise.torque,
         theta_variance=noise.position,
-        bandwidth=2 * math.pi * min(bandwidth, coherent, _RESOLVED / samples.T),
-        coherent=coherent,
-        V_a=_best_V_a(T, start, longest, noise.bandwidth),
+        bandwidth=2 * math.pi * min(bandwidth, band.coherent, _RESOLVED / samples.T),
+        coherent=band.coherent,
+        V_a=_best_V_a(T, start, view.longest, noise.bandwidth),
         phi=max(float(np.max(np.abs(piece.phi - center))) for piece in pieces),
         zero=center,
         knees=()
@@ -147,9 +145,9 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
         set_point_moves=set_point_moves(pieces),
         torque=0.0
         if no_torque
-        else max(spring, *(abs(gamma) * float(np.max(np.abs(each.tau))) for each in pieces)),
-        B=float(every["motor.B"]),
-        D_theta=float(every["motor.D_theta"]),
+        else max(spring, *(abs(gamma) * float(np.max(np.abs(piece.tau))) for piece in pieces)),
+        B=float(view.parameters["motor.B"]),
+        D_theta=float(view.parameters["motor.D_theta"]),
         notes=[*samples.notes, *_notes(changed, motor, inertia, no_torque, hidden)],
     )
 
@@ -186,27 +184,18 @@ def _apart(pieces: Sequence[Signals], count: float) -> int:
     The rounding errors must be independent from one sample to the next. In slow motion, adjacent
     samples have equal rounding errors.
     """
-    moved = math.sqrt(np.mean(np.concatenate([np.diff(each.theta) for each in pieces]) ** 2))
+    moved = math.sqrt(np.mean(np.concatenate([np.diff(piece.theta) for piece in pieces]) ** 2))
     if moved >= count or moved == 0:
         return 1
-    longest = max(len(each.theta) for each in pieces)
+    longest = max(len(piece.theta) for piece in pieces)
     return max(1, min(math.ceil(2 * count / moved), longest // _FEWEST))
-
-
-def _known_inertia(every: Mapping[str, Value], configuration: Configuration) -> KnownInertia | None:
-    """Returns the configured B, unless its prior is the wide prior for an unknown B."""
-    std = float(every["prior.B"])
-    given = "motor.B" in configuration.parameters
-    return KnownInertia(float(every["motor.B"]), std) if given and 0 < std < WIDE else None
 
 
 def _center(zero: Quantity | None, pieces: Sequence[Signals]) -> float:
     """Returns the zero of the deformation if its distance from 0 is significant; else 0."""
     if zero is None or not zero.determined:
         return 0.0
-    covered = max(float(np.ptp(piece.phi)) for piece in pieces)
-    is_wrong = abs(zero.value) > max(zero.half_width, _MATTERS * covered)
-    return zero.value if is_wrong else 0.0
+    return zero.value if is_off(zero.value, zero.half_width, covered(pieces)) else 0.0
 
 
 def _check(configuration: Configuration, torque_constant: bool) -> None:
@@ -220,17 +209,6 @@ def _check(configuration: Configuration, torque_constant: bool) -> None:
             f"{configuration.path}: expected [ports.tau] in A with a torque_constant; "
             "add both, or omit --torque-constant"
         )
-
-
-def _beginning(samples: Samples) -> Samples:
-    """Returns the first 600 s of a log, which are used for the identification."""
-    if len(samples.values) * samples.T <= _LONGEST:
-        return samples
-    return replace(
-        samples,
-        values=samples.values[: round(_LONGEST / samples.T)],
-        notes=[*samples.notes, f"used the first {_LONGEST:g} s"],
-    )
 
 
 def _best_V_a(T: float, start: Mapping[str, Value], piece: Signals, f_0: float) -> float:

@@ -1,16 +1,22 @@
 """Computes motor data with 95 % intervals, from several fits of the motor equation."""
 
+from __future__ import annotations
+
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from sigmahat.fmi.model import Value
 from sigmahat.motor import equation
-from sigmahat.motor.equation import MOTOR, Fit, Form, Signals, Stribeck
-from sigmahat.motor.quantities import Quantity
-from sigmahat.motor.spring import Spring
-from sigmahat.recording.log import Array
+from sigmahat.motor.equation import MOTOR, Choice, Fit, Form
+from sigmahat.motor.friction import frictions, slower, with_all_columns
+from sigmahat.motor.log_view import LogView
+from sigmahat.motor.quantities import WIDE, Quantity
+from sigmahat.motor.signals import Signals, set_point_moves
+from sigmahat.motor.spring import Spring, is_narrow
+from sigmahat.recording.configuration import Configuration
 
 _UNITS = {"B": "kg.m2", "D_theta": "N.m.s/rad", "tau_coulomb": "N.m"}
 _RELATIVE = 0.1  # largest half width of a determined value, relative to the value
@@ -20,14 +26,18 @@ _POWERS = 4
 interval of the stiffness is a quarter wider; with 3, the interval contains fewer true curves."""
 _SAMPLING = {"B": 0.015, "tau_coulomb": 0.015, "D_theta": 0.001}
 """Relative errors without noise, because reversals happen between samples of period 1 ms."""
-_OF_COVERED = 0.05  # largest half width of a known zero, relative to the range of the deformation
-_STRIBECK = tuple(
-    Stribeck(v, delta) for v in (0.01, 0.02, 0.04, 0.08, 0.16, 0.32) for delta in (1.0, 2.0)
-)
 _ENDS = (0.0, -1.96, 1.96)  # mean and interval ends of a known inertia, in standard deviations
 _FAR = 5.0  # largest plausible error of a known B, in standard deviations
 _ANOTHER = 0.5  # smallest relative error of B that suggests a wrong scale of the torque
 _N, _M = 4, 4  # highest orders of the polynomial that are tried
+
+
+def is_inertia_given(configuration: Configuration, parameters: Mapping[str, Value]) -> bool:
+    """Returns whether the configuration gives B, and not with the wide prior of an unknown B.
+
+    parameters  all parameters of the estimator
+    """
+    return "motor.B" in configuration.parameters and float(parameters["prior.B"]) < WIDE
 
 
 @dataclass(frozen=True)
@@ -36,6 +46,14 @@ class KnownInertia:
 
     value: float  # [kg.m2]
     std: float  # standard deviation of the relative error of B, > 0
+
+    @staticmethod
+    def of(view: LogView) -> KnownInertia | None:
+        """Returns the inertia of a configuration, if it is given with a prior above 0."""
+        std = float(view.parameters["prior.B"])
+        if not is_inertia_given(view.configuration, view.parameters) or not std > 0:
+            return None
+        return KnownInertia(float(view.parameters["motor.B"]), std)
 
     def contradicts(self, found: Quantity) -> bool:
         """Returns whether the error of B is so large that the scale of the torque may be wrong. A
@@ -80,9 +98,7 @@ def fit_motor(
     inertia  known B: if the log does not determine B, the other quantities are identified with
              the known value
     """
-    longest = max(pieces, key=lambda piece: len(piece.theta))
-    m_most = _M if np.ptp(longest.set_point) > 0 else 1
-    form = Form(f_0, min(2.5 * f_0, equation.WIDEST / T), n=_N, m=m_most)
+    form = Form.of_low_pass(f_0, T, n=_N, m=_M if set_point_moves(pieces) else 1)
     without_sensor = [replace(piece, tau_e=None) for piece in pieces]
     form, polynomial = _with_spring(without_sensor, T, gamma, form, symmetric)
     torque = float(np.std(np.concatenate([piece.tau for piece in pieces])))
@@ -113,15 +129,16 @@ def _with_spring(
     interval of the stiffness would be too narrow.
     """
 
-    def chosen(form: Form) -> tuple[Form, Array]:
+    def chosen(form: Form) -> Choice:
         return equation.choose(equation.equations(pieces, T, gamma, form), form)
 
-    odd, errors = chosen(form)
+    odd = chosen(form)
     if symmetric:
-        return odd, replace(odd, n=_POWERS)
-    every, errors_of_all = chosen(form.with_all_powers())
-    best = every if equation.is_more(np.log(errors / errors_of_all)) else odd
-    return best, replace(every, n=_POWERS, m=best.m)
+        return odd.form, replace(odd.form, n=_POWERS)
+    general = chosen(form.with_all_powers())
+    is_general = equation.is_more(np.log(odd.errors / general.errors))
+    best = general.form if is_general else odd.form
+    return best, replace(general.form, n=_POWERS, m=best.m)
 
 
 @dataclass(frozen=True)
@@ -137,21 +154,6 @@ class Variants:
     frictions: Sequence[Fit]  # fits with other forms of friction
 
 
-def _frictions(plain: Form) -> list[Form]:
-    """Returns all forms of the equation with other models of friction."""
-    load = replace(plain, load_friction=True)
-    return [
-        replace(plain, coulomb_velocity=equation.COULOMB_VELOCITY / 4),
-        replace(plain, coulomb_velocity=equation.COULOMB_VELOCITY * 2),
-        load,
-        *(replace(each, stribeck=(one,)) for each in (plain, load) for one in _STRIBECK),
-    ]
-
-
-def _with_all_columns(form: Form) -> Form:
-    return replace(form, load_friction=True, stribeck=_STRIBECK, delay=True)
-
-
 def _variants(
     pieces: Sequence[Signals], T: float, gamma: float, form: Form, inertia: KnownInertia | None
 ) -> tuple[Variants, Variants | None]:
@@ -162,29 +164,29 @@ def _variants(
     The second result has the fits with the known B, if a known B exists.
     """
     sensor = pieces[0].tau_e is not None
-    widest = _with_all_columns(form)
+    widest = with_all_columns(form)
     whole, names = equation.equations(pieces, T, gamma, widest), set(widest.names(sensor))
 
-    def fits_of(each: Form) -> list[Fit]:
+    def fits_of(other: Form) -> list[Fit]:
         """Fits with an unknown B, then with the known B and with both ends of its interval."""
-        if _with_all_columns(each) == widest:  # neither a filter nor v_s differs
-            system = whole.without(names.difference(each.names(sensor)))
+        if with_all_columns(other) == widest:  # neither a filter nor v_s differs
+            system = whole.without(names.difference(other.names(sensor)))
         else:
-            system = equation.equations(pieces, T, gamma, each)
+            system = equation.equations(pieces, T, gamma, other)
         ends = [] if inertia is None else [inertia.value * (1 + k * inertia.std) for k in _ENDS]
-        return [equation.fit(each) for each in (system, *(system.known("B", B) for B in ends))]
+        return [equation.fit(e) for e in (system, *(system.known("B", B) for B in ends))]
 
     plain = replace(form, delay=True)
-    every = {each: fits_of(each) for each in (plain, *_frictions(plain))}
-    best = min(every, key=lambda each: np.nan_to_num(every[each][0].error, nan=np.inf))
-    chosen = best if equation.is_worse(every[plain][0], every[best][0]) else plain
+    fits = {other: fits_of(other) for other in (plain, *frictions(plain))}
+    best = min(fits, key=lambda other: np.nan_to_num(fits[other][0].error, nan=np.inf))
+    chosen = best if equation.is_worse(fits[plain][0], fits[best][0]) else plain
     filters = [
         fits_of(replace(chosen, wide=min(2 * form.wide, 2 * equation.WIDEST / T))),
-        fits_of(replace(chosen, f_0=0.6 * form.f_0)),
+        fits_of(slower(chosen)),
     ]
-    first = every.pop(chosen)
+    first = fits.pop(chosen)
     free, *known = (
-        Variants(first[i], [each[i] for each in filters], [each[i] for each in every.values()])
+        Variants(first[i], [fit[i] for fit in filters], [fit[i] for fit in fits.values()])
         for i in range(min(2, len(first)))
     )
     if not known:
@@ -229,10 +231,10 @@ def _zero(spring: Spring, fits: Sequence[Fit], gamma: float) -> Quantity:
     The zero is determined if its interval is short compared with the range of the deformation, and
     if the stiffness is positive. A negative stiffness means a wrong sign or gear ratio.
     """
-    value, *others = (replace(spring, fit=each).zero() for each in (spring.fit, *fits))
+    value, *others = (replace(spring, fit=fit).zero() for fit in (spring.fit, *fits))
     if not all(map(math.isfinite, [value, *others])):
         return Quantity(math.nan, math.inf, "rad", False)
     half_width = spring.half_width(value) + max(abs(other - value) for other in others)
     is_stiff = spring.slope(value) * gamma < 0
-    is_narrow = half_width < _OF_COVERED * spring.covered
-    return Quantity(value, half_width, "rad", bool(is_stiff and is_narrow))
+    is_known = is_stiff and is_narrow(half_width, spring.covered)
+    return Quantity(value, half_width, "rad", bool(is_known))

@@ -28,8 +28,8 @@ def variance(values: Array, resolution: float = 0.0) -> float:
     of white noise have 70 times the variance of the noise. The median over windows ignores jumps.
     """
     windows = np.array_split(np.diff(values, 4), min(_WINDOWS, max(1, len(values) // 50)))
-    found = float(np.median([np.mean(each**2) for each in windows])) / 70
-    return max(found, resolution**2 / 12)
+    noise = float(np.median([np.mean(window**2) for window in windows])) / 70
+    return max(noise, resolution**2 / 12)
 
 
 def is_only_noise(values: Array) -> bool:
@@ -37,9 +37,9 @@ def is_only_noise(values: Array) -> bool:
     return float(np.var(values)) <= _ONLY_NOISE * variance(values)
 
 
-def count(every: Mapping[str, Value], encoder: str = "theta") -> float:
+def count(parameters: Mapping[str, Value], encoder: str = "theta") -> float:
     """Computes the angle of one encoder count [rad] from all parameters; 0 without an encoder."""
-    counts = float(every[f"encoder.{encoder}"])
+    counts = float(parameters[f"encoder.{encoder}"])
     return 2 * math.pi / counts if counts else 0.0
 
 
@@ -53,10 +53,10 @@ class TorqueNoise:
     T: float  # time between samples [s]
 
     @staticmethod
-    def of(tau: Array, theta: Array, every: Mapping[str, Value], T: float) -> TorqueNoise:
-        """Computes the noise of the signals of a motor; `every`: parameters of the estimator."""
-        inertia = float(every["motor.B"]) * abs(float(every["motor.gamma"]))
-        return TorqueNoise(variance(tau), variance(theta, count(every)), inertia, T)
+    def of(tau: Array, theta: Array, parameters: Mapping[str, Value], T: float) -> TorqueNoise:
+        """Computes the noise of the signals of a motor, with all parameters of the estimator."""
+        inertia = float(parameters["motor.B"]) * abs(float(parameters["motor.gamma"]))
+        return TorqueNoise(variance(tau), variance(theta, count(parameters)), inertia, T)
 
     @property
     def bandwidth(self) -> float:

@@ -13,11 +13,35 @@ from itertools import combinations
 import numpy as np
 
 from sigmahat.estimator.powers import powers_of_phi
-from sigmahat.motor import equation
-from sigmahat.motor.equation import CONSTANT, WIDEST, Equations, Fit, Form, Signals
+from sigmahat.motor import equation, signals
+from sigmahat.motor.equation import CONSTANT, Equations, Fit, Form
+from sigmahat.motor.signals import Signals
 from sigmahat.recording.log import Array
 
 _USUAL = (0.005, 0.995)  # quantiles of the deformation between which the polynomial is valid
+_OF_COVERED = 0.05
+"""Smallest relevant error of the zero, and largest half width of a known zero, relative to the
+range of the deformation."""
+
+
+def covered(pieces: Sequence[Signals]) -> float:
+    """Computes the range of the deformation in a log [rad]."""
+    return float(np.ptp(np.concatenate([piece.phi for piece in pieces])))
+
+
+def is_narrow(half_width: float, covered: float) -> bool:
+    """Returns whether the interval of a zero is short compared with the range `covered` [rad]."""
+    return half_width < _OF_COVERED * covered
+
+
+def is_off(zero: float, half_width: float, covered: float) -> bool:
+    """Returns whether the zero of the deformation is known, and is relevantly different from 0.
+
+    zero, half_width  deformation without torque, and half of its 95 % interval [rad]
+    covered           range of the deformation in the log [rad]
+    """
+    is_relevant = abs(zero) > max(half_width, _OF_COVERED * covered)
+    return is_narrow(half_width, covered) and is_relevant
 
 
 @dataclass(frozen=True)
@@ -31,12 +55,12 @@ class Spring:
     @cached_property
     def units(self) -> tuple[float, float]:
         """Divisors of deformation and set-point in the polynomial [rad, 1], as in Equations."""
-        return equation.units(self.pieces)
+        return signals.units(self.pieces)
 
     @property
     def covered(self) -> float:
         """Range of the deformation in the log [rad]."""
-        return float(np.ptp(np.concatenate([each.phi for each in self.pieces])))
+        return covered(self.pieces)
 
     def zero(self) -> float:
         """Computes the deformation at which spring and constant torque cancel [rad], else nan.
@@ -128,7 +152,7 @@ _ORDER = 4  # powers of the torque of each of the two springs
 
 def plain_equations(pieces: Sequence[Signals], T: float, gamma: float, f_0: float) -> Equations:
     """Computes equations with one spring of all powers, without set-point, else as fit_motor()."""
-    form = Form(f_0, min(2.5 * f_0, WIDEST / T), n=_ORDER, symmetric=False)
+    form = Form.of_low_pass(f_0, T, n=_ORDER, symmetric=False)
     return equation.equations(pieces, T, gamma, form)
 
 
@@ -138,7 +162,7 @@ def change_of_spring(system: Equations, pieces: Sequence[Signals]) -> int | None
 
     Samples are counted over all stretches. The argument system is from plain_equations().
     """
-    if equation.set_point_moves(pieces):
+    if signals.set_point_moves(pieces):
         return None
     scale = system.scale
     R = system.R / np.append(np.where(scale > 0, scale, 1.0), 1.0)
@@ -147,7 +171,7 @@ def change_of_spring(system: Equations, pieces: Sequence[Signals]) -> int | None
     def error(place: int) -> float:
         """Computes the sum of squared errors with another spring from the block `place` on."""
         before, later = (
-            equation.factor(each.reshape(-1, R.shape[2])) for each in (R[:place], R[place:])
+            equation.factor(part.reshape(-1, R.shape[2])) for part in (R[:place], R[place:])
         )
         one, other = np.concatenate([before, later]), np.concatenate([0 * before, later])
         both, y = np.column_stack([one[:, :-1], other[:, spring]]), one[:, -1]
@@ -167,13 +191,15 @@ def change_of_spring(system: Equations, pieces: Sequence[Signals]) -> int | None
 
 def with_two_springs(pieces: Sequence[Signals], first: int) -> list[Signals]:
     """Adds regressors for a change of the spring torque, which are 0 before the sample `first`."""
-    unit, begin, found = equation.units(pieces)[0], 0, []
+    unit = signals.units(pieces)[0]
+    begin = 0
+    changed = []
     for piece in pieces:
         later = np.arange(begin, begin + len(piece.phi)) >= first
         powers: Array = np.vander(piece.phi / unit, _ORDER, increasing=True)
-        found.append(replace(piece, extra=powers * later[:, None]))
+        changed.append(replace(piece, extra=powers * later[:, None]))
         begin += len(piece.phi)
-    return found
+    return changed
 
 
 _SHARES = np.linspace(0.1, 0.9, 17)  # tried places of a knee, divided by the usual deformation
@@ -205,33 +231,34 @@ def knees(
 
     def beyond(shares: Array) -> Equations:
         places, phis = shares * usual, [piece.phi[:, None] - zero for piece in used]
-        columns = [each - np.clip(each, -places, places) for each in phis]
-        with_knees = [replace(p, extra=each) for p, each in zip(used, columns, strict=True)]
+        columns = [phi - np.clip(phi, -places, places) for phi in phis]
+        with_knees = [replace(p, extra=extra) for p, extra in zip(used, columns, strict=True)]
         return equation.equations(with_knees, T, gamma, form)
 
     coarse = beyond(_SHARES)
-    best, found = _least(coarse, _SHARES, 0)
+    best, fit = _least(coarse, _SHARES, 0)
     for number in (1, 2):
         near, _ = _least(coarse, _SHARES, number)
         shares = np.unique(np.add.outer(near, _FINER))
         better, other = _least(beyond(shares), shares, number)
         changes = [abs(x) for name, x in other.value.items() if name.startswith("extra")]
         # A second knee with a small change may only correct the place of the first knee.
-        if not equation.is_worse(found, other) or min(changes) < _LEAST_CHANGE * max(changes):
+        if not equation.is_worse(fit, other) or min(changes) < _LEAST_CHANGE * max(changes):
             break
-        best, found = better, other
+        best, fit = better, other
     return tuple((best * usual).tolist())
 
 
 def _least(e: Equations, shares: Array, number: int) -> tuple[Array, Fit]:
     """Finds the given number of knees with the least error; returns their places and the fit."""
-    own = e.names[: len(e.names) - len(shares)]
+    without_knees = e.names[: len(e.names) - len(shares)]
 
     def fitted(chosen: Sequence[int]) -> tuple[Array, Fit]:
-        return shares[list(chosen)], equation.fit(e.only([*own, *map(equation.extra, chosen)]))
+        names = [*without_knees, *map(equation.extra, chosen)]
+        return shares[list(chosen)], equation.fit(e.only(names))
 
-    def error(each: tuple[Array, Fit]) -> float:
-        return float(np.nan_to_num(each[1].error, nan=math.inf))
+    def error(places_and_fit: tuple[Array, Fit]) -> float:
+        return float(np.nan_to_num(places_and_fit[1].error, nan=math.inf))
 
     tried = combinations(range(len(shares)), number)
     apart = (c for c in tried if np.all(np.diff(shares[list(c)]) >= _KNEES_APART))

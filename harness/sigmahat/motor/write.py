@@ -35,7 +35,7 @@ _NOT_KNOWN = (WIDE_PRIOR, NOT_YOURS, _MIDDLE)
 """Comments of values that the next log may determine."""
 
 
-def update(document: tomlkit.TOMLDocument, found: Identified, joint: str = "") -> list[str]:
+def update(document: tomlkit.TOMLDocument, identified: Identified, joint: str = "") -> list[str]:
     """Writes determined values into [parameters] and [ports.tau], and all values into [identified],
     for one joint of the document.
 
@@ -45,24 +45,24 @@ def update(document: tomlkit.TOMLDocument, found: Identified, joint: str = "") -
     Returns the keys that were set.
     """
     _remove_what_is_not_known(document, joint)
-    own = several_joints.section(document, joint)
-    every = several_joints.of_joint(document, joint)
-    given = dict(toml_file.dotted(every.get("parameters", tomlkit.table()).unwrap()))
+    section = several_joints.section(document, joint)
+    whole = several_joints.of_joint(document, joint)
+    given = dict(toml_file.dotted(whole.get("parameters", tomlkit.table()).unwrap()))
     values: dict[str, Any] = {
-        "filter.V_a": found.V_a,
-        "rls.symmetric": found.symmetric,
-        "rls.n": found.n,
-        "rls.m": found.m,
-        "noise.tau": math.sqrt(found.tau_variance),
-        "regression.bandwidth": _ABOVE * found.bandwidth,
-        "range.phi": _ROOM * found.phi,
-        "range.setPoint": _ROOM * found.set_point,
-        "range.setPoint_center": found.set_point_center,
-        "prior.tau_e": _ROOM * found.torque,
+        "filter.V_a": identified.V_a,
+        "rls.symmetric": identified.symmetric,
+        "rls.n": identified.n,
+        "rls.m": identified.m,
+        "noise.tau": math.sqrt(identified.tau_variance),
+        "regression.bandwidth": _ABOVE * identified.bandwidth,
+        "range.phi": _ROOM * identified.phi,
+        "range.setPoint": _ROOM * identified.set_point,
+        "range.setPoint_center": identified.set_point_center,
+        "prior.tau_e": _ROOM * identified.torque,
     }
-    for name, knee in zip(_KNEES, found.knees, strict=False):
+    for name, knee in zip(_KNEES, identified.knees, strict=False):
         values[name] = knee / values["range.phi"]
-    for name, q in found.quantities.items():
+    for name, q in identified.quantities.items():
         if q.determined and name in MOTOR:
             if name == "tau_coulomb":
                 values["prior.tau_coulomb"] = max(abs(q.value), q.half_width)
@@ -71,16 +71,16 @@ def update(document: tomlkit.TOMLDocument, found: Identified, joint: str = "") -
             if name == "B":  # D_theta gets no prior, because friction changes with temperature
                 values["prior.B"] = max(q.half_width / q.value, _ERROR_OF_B)
     # The log may be one of several, each at another set-point.
-    kept = _OF_SET_POINT if given.get("rls.m") and not found.set_point_moves else ()
+    kept = _OF_SET_POINT if given.get("rls.m") and not identified.set_point_moves else ()
     values = {
         name: value
         for name, value in values.items()
         if name not in kept and (value is False or value != 0)
     }
-    parameters = own.setdefault("parameters", tomlkit.table())
-    unknown = {name: each for name, each in _unknown(found).items() if name not in given}
+    parameters = section.setdefault("parameters", tomlkit.table())
+    unknown = {n: value for n, value in _unknown(identified).items() if n not in given}
     comments = {name: comment for name, (_, comment) in unknown.items()}
-    wide = {n: std for n, std in _wide_priors(found, comments).items() if not given.get(n)}
+    wide = {n: std for n, std in _wide_priors(identified, comments).items() if not given.get(n)}
     comments |= {name: WIDE_PRIOR for name in wide if name not in given}
     values |= {name: value for name, (value, _) in unknown.items()} | wide
     for name, value in values.items():
@@ -89,41 +89,41 @@ def update(document: tomlkit.TOMLDocument, found: Identified, joint: str = "") -
             item.comment(comments[name])
         toml_file.set_dotted(parameters, name, item)
     written = [f"parameters.{name}" for name in values]
-    constant = found.quantities.get("torque_constant")
+    constant = identified.quantities.get("torque_constant")
     if constant is not None and constant.determined:
         item = tomlkit.item(_short(constant.value))
-        several_joints.set_item(own, ("ports", "tau", "torque_constant"), item)
+        several_joints.set_item(section, ("ports", "tau", "torque_constant"), item)
         written.append("ports.tau.torque_constant")
-    if found.zero and "q" in every["ports"]:
-        link = Port(**every["ports"]["q"].unwrap())
-        zero = tomlkit.item(float(f"{link.zero + found.zero / scale('q', link):.9g}"))
-        several_joints.set_item(own, ("ports", "q", "zero"), zero)
+    if identified.zero and "q" in whole["ports"]:
+        link = Port(**whole["ports"]["q"].unwrap())
+        zero = tomlkit.item(float(f"{link.zero + identified.zero / scale('q', link):.9g}"))
+        several_joints.set_item(section, ("ports", "q", "zero"), zero)
         written.append("ports.q.zero")
-    own["identified"] = _record(found)
+    section["identified"] = _record(identified)
     return written
 
 
-def _unknown(found: Identified) -> dict[str, tuple[float, str]]:
+def _unknown(identified: Identified) -> dict[str, tuple[float, str]]:
     """Chooses values for undetermined motor data, with a comment, by parameter: the middle of the
     positive part of the interval, if any."""
     values = {}
-    for name, own in (("B", found.B), ("D_theta", found.D_theta)):
-        quantity = found.quantities.get(name)
+    for name, given in (("B", identified.B), ("D_theta", identified.D_theta)):
+        quantity = identified.quantities.get(name)
         if quantity is not None and not quantity.determined:
             low, high = quantity.interval
             is_held = math.isfinite(high) and high > 0
-            value = 0.5 * (max(low, 0.0) + high) if is_held else own
+            value = 0.5 * (max(low, 0.0) + high) if is_held else given
             values[f"motor.{name}"] = (value, _MIDDLE if is_held else NOT_YOURS)
     return values
 
 
-def _wide_priors(found: Identified, comments: Mapping[str, str]) -> dict[str, float]:
+def _wide_priors(identified: Identified, comments: Mapping[str, str]) -> dict[str, float]:
     """Chooses priors of the motor data that are not determined, by parameter.
 
     comments  comments of parameters that the user has not set; a prior WIDE around the middle of
               an interval contains the interval
     """
-    undetermined = {name: q for name, q in found.quantities.items() if not q.determined}
+    undetermined = {name: q for name, q in identified.quantities.items() if not q.determined}
     priors = {}
     for name in ("B", "D_theta"):
         if name in undetermined:
@@ -132,9 +132,9 @@ def _wide_priors(found: Identified, comments: Mapping[str, str]) -> dict[str, fl
     D_theta = undetermined.get("D_theta")
     if comments.get("motor.D_theta") == _MIDDLE:
         D_theta = None
-    if D_theta is not None and math.isfinite(D_theta.half_width) and found.D_theta > 0:
+    if D_theta is not None and math.isfinite(D_theta.half_width) and identified.D_theta > 0:
         # Encoders that are read at different times look like positive or negative friction.
-        largest = max(abs(end / found.D_theta - 1) for end in D_theta.interval)
+        largest = max(abs(end / identified.D_theta - 1) for end in D_theta.interval)
         priors["prior.D_theta"] = max(priors["prior.D_theta"], largest)
     tau_coulomb = undetermined.get("tau_coulomb")
     if tau_coulomb is not None:
@@ -186,20 +186,20 @@ def _short(value: float) -> float:
     return value if isinstance(value, int) else float(f"{value:.6g}")
 
 
-def _record(found: Identified) -> tomlkit.items.Table:
+def _record(identified: Identified) -> tomlkit.items.Table:
     table = tomlkit.table()
     table.comment("by sigmahat identify: values with 95 % intervals, for you to read")
-    for name, q in found.quantities.items():
+    for name, q in identified.quantities.items():
         row = tomlkit.inline_table()
         row["value"] = _short(q.value) if q.determined else "cannot tell"
         row["half_width"] = float(f"{q.half_width:.3g}")
         row["unit"] = q.unit
         table[name] = row
-    table["tau_noise"] = float(f"{found.tau_variance**0.5:.3g}")
+    table["tau_noise"] = float(f"{identified.tau_variance**0.5:.3g}")
     table["tau_noise"].comment("standard deviation [N.m]")
-    table["theta_noise"] = float(f"{found.theta_variance**0.5:.3g}")
+    table["theta_noise"] = float(f"{identified.theta_variance**0.5:.3g}")
     table["theta_noise"].comment("standard deviation, rounding included [rad]")
-    table["bandwidth"] = float(f"{found.bandwidth:.4g}")
+    table["bandwidth"] = float(f"{identified.bandwidth:.4g}")
     table["bandwidth"].comment("of a filter that balances both [rad/s]")
     table.add(tomlkit.nl())
     return table

@@ -9,6 +9,8 @@ import numpy as np
 from sigmahat.recording.configuration import PORTS, Port
 from sigmahat.recording.log import Array, LogError
 
+TURN = {"rad": 2 * math.pi, "mrad": 2000 * math.pi, "deg": 360.0, "turn": 1.0}
+"""Size of one turn in each unit of angle."""
 _USUAL = ("rad", "mrad", "deg", "turn", "counts", "N.m", "mN.m", "kN.m", "lbf.in", "A", "mA", "mm")
 _USUAL_TIMES = ("s", "ms", "us", "ns", "min", "h")
 _LONGEST = 40  # characters of a unit

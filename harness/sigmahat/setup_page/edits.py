@@ -11,9 +11,9 @@ import tomlkit
 from tomlkit.items import Table
 
 from sigmahat.files import toml_file
-from sigmahat.guess.columns import TURN
 from sigmahat.recording import several_joints
 from sigmahat.recording.configuration import FILL_IN, NOT_YOURS, WIDE_PRIOR
+from sigmahat.recording.units import TURN
 
 _ANGLES, _TORQUES = (*TURN, "counts"), ("N.m", "mN.m", "kN.m")
 UNITS: Mapping[str, Sequence[str]] = {

@@ -1,0 +1,118 @@
+"""Findings from the motion: what the motor equation shows against the configuration.
+
+The inference is in sigmahat.motor.hypotheses. Here its results get their severity, by the priors of
+the configuration and by what identify will set.
+"""
+
+import math
+from collections.abc import Iterator
+
+from sigmahat.checks.findings import Finding, Kind, Severity
+from sigmahat.motor.hypotheses.hypothesis import Evidence, distance
+from sigmahat.motor.hypotheses.positions import Positions, swapped
+from sigmahat.motor.hypotheses.torque import Delay, Inertia, Zero, compare_torque, is_friction_known
+from sigmahat.motor.log_view import LogView
+
+_STD = 3.0  # a prior contradicts the log beyond this number of standard deviations
+_AWAS = 2.3e-5  # start value of motor.B [kg.m2]
+_LARGE = math.log(5.0)
+"""Logarithm of the largest factor by which unmodelled friction and delays can change B."""
+_SAME = 0.01  # two gear ratios count as equal up to this relative difference
+
+
+def finding(
+    kind: Kind,
+    severity: Severity,
+    evidence: Evidence,
+    unit: str,
+    expected: float | None = None,
+    about: str = "",
+) -> Finding:
+    """Creates a finding with the keys and values of all hypotheses."""
+    best, *others = evidence.hypotheses
+    keys = [(other.key, other.value) for other in others]
+    measured = evidence.measured
+    return Finding(kind, severity, best.key, measured, unit, expected, best.value, keys, about)
+
+
+def of_swap(view: LogView) -> Iterator[Finding]:
+    evidence = swapped(view)
+    if evidence is not None:
+        yield finding(Kind.SLOPE, Severity.WRONG, evidence, "", 1.0, "swap")
+
+
+def of_positions(positions: Positions) -> Iterator[Finding]:
+    if positions.scale is not None:
+        severity = Severity.NOTE if positions.may_be_held else Severity.WRONG
+        about = "held" if abs(positions.scale.measured) > 1 else ""
+        yield finding(Kind.SLOPE, severity, positions.scale, "", 1.0, about)
+    if positions.sign is not None:
+        yield finding(Kind.SLOPE, Severity.WRONG, positions.sign, "", 1.0, "sign")
+
+
+def of_gears(view: LogView) -> Iterator[Finding]:
+    """Finds gear ratios of theta and tau that are neither 1 nor motor.gamma."""
+    gamma = abs(view.gamma)
+    for name in ("theta", "tau"):
+        port = view.configuration.ports.get(name)
+        gear = abs(port.gear_ratio) if port else 1.0
+        if gear == 1 or abs(gamma / gear - 1) < _SAME:
+            continue
+        keys = [("motor.gamma", gear), (f"ports.{name}.gear_ratio", gamma)]
+        if name == "tau":
+            keys.reverse()
+        (key, right), other = keys
+        yield Finding(Kind.GEAR, Severity.WRONG, key, other[1], "", right, right, [other], name)
+
+
+def of_torque(positions: Positions) -> Iterator[Finding]:
+    view = positions.view
+    evidence = compare_torque(positions)
+    if evidence.gear is not None:
+        yield finding(Kind.SLOPE, Severity.WRONG, evidence.gear, "", 1.0)
+    if evidence.sign is not None:
+        port = "tau_e_sensor" if view.has_sensor else "tau"
+        yield finding(Kind.SIGN, Severity.WRONG, evidence.sign, "N.m/rad", about=port)
+    if evidence.deformation is not None:
+        kind = Kind.STIFFNESS_SIGN
+        yield finding(kind, Severity.WRONG, evidence.deformation, "N.m/rad")
+    if evidence.zero is not None:
+        yield from _of_zero(view, evidence.zero)
+    if evidence.asymmetry is not None:
+        yield finding(Kind.ASYMMETRY, Severity.NOTE, evidence.asymmetry, "", 1.0)
+    if evidence.torque_delay is not None:
+        yield _of_torque_delay(view, evidence.torque_delay)
+    if evidence.encoder_delay is not None:
+        severity = Severity.WRONG if evidence.encoder_delay.least > view.T else Severity.NOTE
+        about = "" if is_friction_known(view) else "at least "
+        yield finding(Kind.ENCODER_LAG, severity, evidence.encoder_delay, "s", 0.0, about)
+    if evidence.inertia is not None:
+        yield _of_inertia(evidence.inertia)
+
+
+def _of_zero(view: LogView, zero: Zero) -> Iterator[Finding]:
+    """Yields a wrong zero, but only a note within the deformations of the log: identify sets it."""
+    bias = 0.0  # largest bias of the torque that the estimator expects [N.m]
+    if view.parameters["method"] == "FilteredRegression":
+        bias = _STD * float(view.parameters["prior.bias"]) * float(view.parameters["prior.tau_e"])
+    if abs(zero.measured) > zero.covered / 2 and zero.torque > bias:
+        yield finding(Kind.ZERO, Severity.WRONG, zero, "rad", 0.0)
+    elif zero.is_symmetric:
+        yield finding(Kind.ZERO, Severity.NOTE, zero, "rad", 0.0)
+
+
+def _of_torque_delay(view: LogView, delay: Delay) -> Finding:
+    if delay.least < _STD * float(view.parameters["prior.delay"]):
+        # A delay within prior.delay is no error: damping of the spring looks like an early torque.
+        key = delay.hypotheses[0].key
+        return Finding(Kind.TORQUE_LAG, Severity.NOTE, key, delay.measured, "s", 0.0)
+    return finding(Kind.TORQUE_LAG, Severity.WRONG, delay, "s", 0.0)
+
+
+def _of_inertia(inertia: Inertia) -> Finding:
+    unit, given = "kg.m2", inertia.given
+    if inertia.is_geared:
+        return finding(Kind.TORQUE_SCALE, Severity.WRONG, inertia, unit, given)
+    is_wrong = given == _AWAS or distance(inertia.measured, given) > _LARGE
+    severity = Severity.WRONG if is_wrong else Severity.NOTE
+    return finding(Kind.INERTIA, severity, inertia, unit, given)

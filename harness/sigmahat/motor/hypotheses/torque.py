@@ -1,0 +1,258 @@
+"""Compares the torque with the motion, by the motor equation: signs, gear ratio, zero of the
+deformation, delays, and inertia.
+
+The order matters: with a wrong deformation or a wrong sign, further results mean nothing.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from sigmahat.motor.equation import explains
+from sigmahat.motor.friction import few_frictions, slower
+from sigmahat.motor.hypotheses.hypothesis import Evidence, Hypothesis, distance, gear_of_slope
+from sigmahat.motor.hypotheses.positions import Positions
+from sigmahat.motor.log_view import LogView
+from sigmahat.motor.quantities import WIDE
+from sigmahat.motor.quick_fit import (
+    LINEAR,
+    LONGEST_DELAY,
+    QuickFit,
+    delay_of_torque,
+    error_of_parts,
+    gear_error,
+    with_all_powers,
+    with_form,
+    with_known,
+)
+from sigmahat.motor.spring import is_off
+from sigmahat.recording.units import scale
+
+
+@dataclass(frozen=True)
+class Zero(Evidence):
+    """Deformation at which the spring has no torque [rad]."""
+
+    covered: float  # range of the deformation in the log [rad]
+    torque: float  # torque of the spring at a deformation of this size, at the gear output [N.m]
+    is_symmetric: bool  # whether the spring has odd powers alone
+
+
+@dataclass(frozen=True)
+class Delay(Evidence):
+    """Delay of a column relative to the others [s]."""
+
+    least: float
+    """Least delay in the interval [s]: a magnitude for the torque, signed for the encoders."""
+    error: float  # sum of the squared errors with this delay
+
+
+@dataclass(frozen=True)
+class Inertia(Evidence):
+    """Inertia of the motor, another one than the configured one [kg.m2]."""
+
+    given: float  # configured inertia [kg.m2]
+    is_geared: bool  # whether a torque that is geared twice, or not at all, explains the ratio
+
+
+@dataclass(frozen=True)
+class TorqueEvidence:
+    """What the torque shows against a configuration; None for what it does not contradict."""
+
+    gear: Evidence | None = None  # slope of q on theta by a slightly wrong gear ratio [1]
+    sign: Evidence | None = None  # stiffness with the configured sign of the torque [N.m/rad]
+    deformation: Evidence | None = None  # negative stiffness by a wrong deformation [N.m/rad]
+    zero: Zero | None = None
+    asymmetry: Evidence | None = None  # ratio of the errors, without and with even powers [1]
+    torque_delay: Delay | None = None
+    encoder_delay: Delay | None = None  # of q relative to theta
+    inertia: Inertia | None = None
+
+
+def compare_torque(positions: Positions) -> TorqueEvidence:
+    """Asks all that the motion in the log allows to ask about the torque."""
+    view, fit = positions.view, positions.fit
+    if fit is None or not fit.has_stiffness:
+        return TorqueEvidence()
+    if not positions.corrections and (gear := _gear(view, fit)) is not None:
+        return TorqueEvidence(gear=gear)
+    if -np.sign(view.gamma) * fit.scores[LINEAR] < -1:
+        return _negative_stiffness(view, fit)
+    zero = _zero(view, fit)
+    asymmetry = None if zero is not None else _asymmetry(view, fit)
+    if view.has_sensor:
+        return TorqueEvidence(zero=zero, asymmetry=asymmetry)
+    of_torque, of_encoder = _delay_of_torque(view, fit), _delay_of_encoder(view, fit)
+    if of_torque is not None and of_encoder is not None:
+        # A late link position has the same effect as an early torque, and the other way round.
+        if of_torque.measured > 0 and of_torque.error < of_encoder.error:
+            of_encoder = None
+        else:
+            of_torque = None
+    return TorqueEvidence(
+        zero=zero,
+        asymmetry=asymmetry,
+        torque_delay=of_torque,
+        encoder_delay=of_encoder,
+        inertia=_inertia(view, fit),
+    )
+
+
+def _negative_stiffness(view: LogView, fit: QuickFit) -> TorqueEvidence:
+    """Finds a torque of wrong sign, or a wrong deformation if only the stiffness is negative."""
+    port = "tau_e_sensor" if view.has_sensor else "tau"
+    key = f"ports.{port}.sign"
+    if view.has_sensor or fit.sign_of_motor < 0:
+        other = Hypothesis(key, -view.configuration.ports[port].sign, "tau", -1.0)
+        return TorqueEvidence(sign=Evidence(fit.stiffness, [other]))
+    keys = ("ports.theta.gear_ratio", "ports.q.gear_ratio", key)
+    return TorqueEvidence(
+        deformation=Evidence(fit.stiffness, [Hypothesis(each, None) for each in keys])
+    )
+
+
+_LEAST_GEAR = 2e-3
+"""Smallest relative error of a gear ratio that is reported; real gears have smaller errors."""
+_MUCH = 0.3
+"""Largest ratio of the squared errors, corrected to configured, if a gear ratio is wrong."""
+
+
+def _gear(view: LogView, fit: QuickFit) -> Evidence | None:
+    """Finds a slightly wrong gear ratio, if the correction explains much of the torque."""
+    if "theta" not in view.configuration.ports:
+        return None
+    error = gear_error(view, fit.form)
+    if error is None or not abs(error.value - 1) > error.half_width + _LEAST_GEAR:
+        return None
+    # An asymmetric spring, a wrong zero, or a changing spring must not explain the errors too.
+    others = [
+        fit.fit.error,
+        with_all_powers(view, fit.form).error,
+        error_of_parts(view, fit.form),
+    ]
+    if not all(error.fit.error < _MUCH * other for other in others if math.isfinite(other)):
+        return None
+    theta = view.configuration.ports["theta"]
+    return Evidence(1 / error.value, [gear_of_slope(theta, error.value, error.half_width)])
+
+
+def _zero(view: LogView, fit: QuickFit) -> Zero | None:
+    """Finds a wrong zero of the deformation.
+
+    A polynomial with even powers may have its zero anywhere in the range of the deformation.
+    """
+    zero, covered = fit.spring.zero(), fit.spring.covered
+    if not math.isfinite(zero) or not is_off(zero, fit.spring.half_width(zero), covered):
+        return None
+    hypotheses = [
+        Hypothesis(f"ports.{name}.zero", float(f"{port.zero + angle / scale(name, port):.6g}"))
+        for name, angle in (("q", zero), ("theta", -zero))
+        if (port := view.configuration.ports.get(name)) is not None
+    ]
+    return Zero(zero, hypotheses, covered, abs(fit.stiffness * zero), fit.form.symmetric)
+
+
+def _asymmetry(view: LogView, fit: QuickFit) -> Evidence | None:
+    if not fit.form.symmetric:
+        return None
+    other = with_all_powers(view, fit.form)
+    if not explains(fit.fit, other):
+        return None
+    return Evidence(math.sqrt(fit.fit.error / other.error), [Hypothesis("rls.symmetric", False)])
+
+
+def _delay_of_torque(view: LogView, fit: QuickFit) -> Delay | None:
+    """Finds a delay of the torque relative to the motion."""
+    late = delay_of_torque(view, fit.form)
+    if late is None:
+        return None
+    least = abs(late.value) - late.half_width
+    if least < view.T or not explains(fit.fit, late.fit):
+        return None
+    # Another form of friction or another form of spring must not explain the torque too.
+    others = [with_form(view, form) for form in few_frictions(fit.form)]
+    others.append(with_all_powers(view, fit.form))
+    if not all(explains(other, late.fit) for other in others):
+        return None
+    delay = float(f"{view.configuration.ports['tau'].delay + late.value:.3g}")
+    return Delay(late.value, [Hypothesis("ports.tau.delay", delay)], least, late.fit.error)
+
+
+def _delay_of_encoder(view: LogView, fit: QuickFit) -> Delay | None:
+    """Finds a time lag between the encoders, which appears as negative viscous friction.
+
+    Unmodelled friction can also appear as negative viscous friction. Therefore the equation must
+    fit better without the lag: much better, unless the negative friction explains much.
+    """
+    friction = fit.linear.value["D_theta"]
+    largest_friction = friction + fit.linear.half_width["D_theta"]
+    if not largest_friction < 0:
+        return None
+    # Without a known friction, the result is a lower limit of the lag.
+    D_theta = float(view.parameters["motor.D_theta"]) if is_friction_known(view) else 0.0
+    lag = view.gamma * (friction - D_theta) / fit.slope
+    if abs(lag) > LONGEST_DELAY:
+        return None
+    without = with_form(view.earlier("q", lag), fit.form)
+    is_better = explains(fit.fit, without)
+    if not is_better and without.error < fit.fit.error:
+        is_better = explains(with_known(view, fit.form, "D_theta", 0.0), fit.fit)
+    if not is_better:
+        return None
+    ports = view.configuration.ports
+    hypotheses = [
+        Hypothesis("ports.q.delay", float(f"{ports['q'].delay + lag:.3g}")),
+        Hypothesis("ports.theta.delay", float(f"{ports['theta'].delay - lag:.3g}")),
+    ]
+    least = view.gamma * largest_friction / fit.slope
+    return Delay(lag, hypotheses, least, without.error)
+
+
+def is_friction_known(view: LogView) -> bool:
+    """Returns whether the configuration gives the viscous friction of the motor."""
+    return float(view.parameters["prior.D_theta"]) < WIDE
+
+
+_DIFFERENT = math.log(2.0)  # logarithm of the largest factor that a torque constant explains
+_LIKE = math.log(3.0)  # tolerance of the logarithm of a ratio of inertias to the gear ratio
+
+
+def _inertia(view: LogView, fit: QuickFit) -> Inertia | None:
+    """Finds a wrong inertia or a wrong scale of the torque, if the evidence is clear.
+
+    With a wide prior of B, the inertia is not compared, because identify will determine B.
+    """
+    given = float(view.parameters["motor.B"])
+    if not given > 0 or float(view.parameters["prior.B"]) >= WIDE:
+        return None
+    nearest = _nearest(view, fit, given)
+    if nearest is None or distance(nearest, given) < _DIFFERENT:
+        return None
+    if not explains(with_known(view, fit.form, "B", given), fit.fit):
+        return None
+    B = fit.fit.value["B"]
+    of_motor = Hypothesis("motor.B", float(f"{B:.3g}"))
+    gamma = abs(view.gamma)
+    geared = [gear for gear in (gamma, 1 / gamma) if distance(B, gear * given) < _LIKE]
+    is_given = "motor.B" in view.configuration.parameters
+    if is_given and geared and math.log(gamma) > 2 * _LIKE:
+        gear = float(f"{view.configuration.ports['tau'].gear_ratio * geared[0]:.6g}")
+        of_gear = Hypothesis("ports.tau.gear_ratio", gear, "tau", 1 / geared[0])
+        return Inertia(B, [of_gear, of_motor], given, is_geared=True)
+    constant = Hypothesis("ports.tau.torque_constant", None)
+    return Inertia(B, [of_motor, constant], given, is_geared=False)
+
+
+def _nearest(view: LogView, fit: QuickFit, given: float) -> float | None:
+    """Returns the inertia nearest to `given` among the ends of the interval and fits with other
+    forms of friction. None if the difference is not clear, or an inertia is not above 0."""
+    B, half_width = fit.fit.value["B"], fit.fit.half_width["B"]
+    if not 0 < B - half_width < math.inf or distance(B, given) < _DIFFERENT:
+        return None
+    forms = [slower(fit.form), *few_frictions(fit.form)]
+    inertias = [with_form(view, form).value["B"] for form in forms]
+    inertias += [B - half_width, B + half_width]
+    if not all(inertia > 0 for inertia in inertias):
+        return None
+    return min(inertias, key=lambda inertia: distance(inertia, given))
