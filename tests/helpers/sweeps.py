@@ -32,9 +32,15 @@ def wait_until(is_so: Callable[[], bool], process: subprocess.Popen[Any]) -> Non
 
 
 def written(folder: Path) -> int:
-    """Number of runs that a sweep has written so far; nobody else may read its database."""
+    """Least number of runs that a sweep has recorded so far; nobody else may read its database."""
     path = folder / NAME
-    return path.read_bytes().count(b'{"RESIDUAL": {') if path.exists() else 0
+    if not path.exists():
+        return 0
+    count = path.read_bytes().count(b'{"RESIDUAL": {')
+    # While a record is being written, the journal would remove it after an interruption.
+    journal = path.with_name(f"{NAME}-journal")
+    is_open = journal.exists() and any(journal.read_bytes()[:8])
+    return max(count - is_open, 0)
 
 
 def records(folder: Path) -> list[tuple[str, str]]:

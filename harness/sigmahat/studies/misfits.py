@@ -4,10 +4,8 @@ A condition is a misfit that is added to an experiment without misfits. To study
 this file and change CONDITIONS. A *claim* is the standard deviation sigma_std of an estimate.
 """
 
-import logging
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property, partial
 from pathlib import Path
@@ -328,22 +326,10 @@ def simulated_log(condition: str, joint: str, seed: int) -> LogWithTruth:
 
 def estimate_score(log: LogWithTruth) -> Score:
     """Computes the score of FilteredRegression on a log."""
-    estimator = Estimator(log.parameters, ("sigma", "sigma_std", "confident"))
-    with _without_warnings():
-        found = estimator.run(**log.measured)
+    record = ("sigma", "sigma_std", "confident")
+    estimator = Estimator(log.parameters, record, warn_of_range=False)
+    found = estimator.run(**log.measured)
     return log.score(found["sigma"], found["confident"], std=found["sigma_std"])
-
-
-@contextmanager
-def _without_warnings() -> Iterator[None]:
-    """Context without warnings about range.phi, which some conditions exceed on purpose."""
-    logger = logging.getLogger("sigmahat")
-    level = logger.level
-    logger.setLevel(logging.ERROR)
-    try:
-        yield
-    finally:
-        logger.setLevel(level)
 
 
 def scored(condition: str, joint: str, seed: int) -> Outcome:
