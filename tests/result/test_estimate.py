@@ -25,7 +25,7 @@ from sigmahat.fmi.master import Recording
 from sigmahat.paper.scenarios import SCENARIOS
 from sigmahat.recording.configuration import Port
 from sigmahat.recording.readers.formats import open_log
-from sigmahat.recording.units import convert
+from sigmahat.recording.units import Conversion
 
 SIGMA = "estimate.sigma [N.m/rad]"
 AS_IN_THE_FMU = re.sub(r"motor\..*\n", "", CONFIGURATION)
@@ -91,7 +91,7 @@ ENCODER = Port("x", unit="counts", counts_per_turn=800, gear_ratio=50, sign=-1.0
     ],
 )
 def test_units_sign_zero_and_gear(name: str, port: Port, value: float, expected: float) -> None:
-    assert convert(name, port, np.array([value])) == pytest.approx([expected])
+    assert Conversion.of(name, port).apply(np.array([value])) == pytest.approx([expected])
 
 
 def test_other_columns_stay_as_they_are(log: Columns, shell: Shell) -> None:

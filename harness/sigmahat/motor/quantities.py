@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from sigmahat.motor.equation import COULOMB_VELOCITY
+from sigmahat.recording.notes import Note
 
 WIDE = 1.0
 """Relative prior of motor data that the log does not determine. With a prior of 0, motor data count
@@ -67,7 +68,7 @@ class Identified:
     """Largest magnitude of the torque of the motor after its gear, or of the spring [N.m]."""
     B: float  #: Motor inertia of the configuration [kg.m2].
     D_theta: float  #: Viscous friction of the configuration [N.m.s/rad].
-    notes: Sequence[str]  #: Sentences about the processing of the samples of the log.
+    notes: Sequence[Note]  #: On reading the log, on its samples and on the motor.
 
 
 def as_dict(identified: Identified) -> dict[str, Any]:
@@ -95,13 +96,13 @@ def as_dict(identified: Identified) -> dict[str, Any]:
         "largest distance of setPoint from its center [1]": identified.set_point,
         "center of setPoint [1]": identified.set_point_center,
         "largest gamma tau [N.m]": identified.torque,
-        "notes": list(identified.notes),
+        "notes": [note.as_dict() for note in identified.notes],
     }
 
 
 def summary(identified: Identified) -> str:
     """Formats the result of an identification as text that fits on one screen."""
-    lines = [f"  {note}" for note in identified.notes]
+    lines = [f"  {note.in_words}" for note in identified.notes]
     lines.append("")
     lines += [f"{name:16}{_text(each)}" for name, each in identified.quantities.items()]
     if not all(each.determined for each in identified.quantities.values()):

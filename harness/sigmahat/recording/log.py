@@ -15,6 +15,7 @@ import pyarrow.compute
 from numpy.typing import NDArray
 
 from sigmahat.fmi.unknown_name import unknown
+from sigmahat.recording.notes import RecordingNote
 
 
 class LogError(ValueError):
@@ -35,7 +36,7 @@ class Log(ABC):
     def __init__(self, path: Path, columns: Mapping[str, int]) -> None:
         self.path = path  #: The file.
         self.columns = columns  #: Number of samples of each column.
-        self.notes: list[str] = []  #: Sentences about the reading of the file.
+        self.notes: list[RecordingNote] = []  #: On reading the file.
 
     def read(self, name: str) -> Array:
         """Reads one column [size: samples]; nan where a sample is missing.

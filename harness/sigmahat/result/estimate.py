@@ -15,6 +15,7 @@ from sigmahat.fmi.model import Value, installed_model
 from sigmahat.fmi.series import Series
 from sigmahat.recording.configuration import Configuration
 from sigmahat.recording.log import Log
+from sigmahat.recording.notes import RecordingNote
 from sigmahat.recording.replay import OUTPUTS
 from sigmahat.result import sheet
 from sigmahat.result.curve import (
@@ -68,7 +69,7 @@ class Estimate:
     """Reason for doubt at the last tick: item of `doubt`; "None" if the estimator was confident."""
     curve: Curve  #: Torque and stiffness against the deformation.
     changes: Sequence[StiffnessChange]  #: Changes that were detected.
-    notes: Sequence[str]  #: Sentences about the processing of the samples of the log.
+    notes: Sequence[RecordingNote]  #: On reading the log and on its samples.
     learned_from: Sequence[str] = ()  #: Earlier logs that the estimator has processed.
     series: Series | None = None
     """The outputs at each tick; None if they were written into a folder."""
@@ -101,7 +102,7 @@ class Estimate:
             "joint": self.joint,
             "sigma_per_gain": self.sigma_per_gain,
             "changes": [{"t [s]": each.t, "relative": each.relative} for each in self.changes],
-            "notes": self.notes,
+            "notes": [note.as_dict() for note in self.notes],
             "learned_from": self.learned_from,
             "parameters": self.parameters,
         }
@@ -114,15 +115,15 @@ def estimate(
     progress: Callable[[int], object] = lambda thousandths: None,
     start_from: str | Path | None = None,
     mcap: bool = False,
-    findings: list[tuple[str, str]] | None = None,
+    findings: list[dict[str, Any]] | None = None,
 ) -> Estimate:
     """Replays the log. Without a folder the outputs at all ticks are in the result, as `series`.
 
     If an existing `folder` is given, it gets these files: the table (estimate.csv or .parquet), the
     curve (estimate.curve.csv), its measured points (estimate.points.csv), and the figure
     (estimate.png and .svg). It also gets the data sheet of the joint (joint.json), the state of
-    the estimator (state.json), and notes for the report (estimate.json), with severity and sentence
-    of each finding. With mcap, it also gets estimate.mcap.
+    the estimator (state.json), and notes for the report (estimate.json), with the findings of the
+    checks as data. With mcap, it also gets estimate.mcap.
 
     progress is called from time to time with the thousandths of the log done since the last call.
     With start_from, a folder of results or its state.json, the estimator starts from this state.
@@ -158,9 +159,9 @@ def estimate(
     replayed = Replayed(
         *(REPLAYED.name, REPLAYED.version, str(log.path)),
         *(result.ticks, result.skipped, result.T),
-        changes=[each.t for each in result.changes],
+        changes=result.changes,
         doubt=replay.statistics.doubts,
-        notes=[*result.notes, *(each.in_words for each in result.changes)],
+        notes=result.notes,
         findings=findings,
     )
     write_json(asdict(replayed), folder / REPLAYED.file)
@@ -171,7 +172,6 @@ def estimate(
 def _result(replay: Replay, found: Curve) -> Estimate:
     samples, statistics, every = replay.samples, replay.statistics, replay.parameters
     last, doubts, before = statistics.last, statistics.doubts, [e.file for e in replay.logs[:-1]]
-    continued = [f"continued from what was learned from {', '.join(before)}"] if before else []
     return Estimate(
         log=replay.log.path,
         ticks=len(samples.values),
@@ -194,7 +194,7 @@ def _result(replay: Replay, found: Curve) -> Estimate:
         doubt_at_end=statistics.last_doubt,
         curve=found,
         changes=replay.changes.found,
-        notes=[*continued, *samples.notes],
+        notes=samples.notes,
         learned_from=before,
     )
 
@@ -209,13 +209,19 @@ def _save_figure(replay: Replay, answered: Answer, folder: Path) -> None:
 _NEGLIGIBLE = 0.1  # fraction of the standard deviation of a prior: smaller estimates are not shown
 
 
+def continued_in_words(files: Sequence[str]) -> list[str]:
+    """Sentence on the earlier logs from which an estimate continued; none without such logs."""
+    return [f"continued from what was learned from {', '.join(files)}"] if files else []
+
+
 def summary(result: Estimate) -> str:
     """Formats the result as text that fits on one screen."""
     p = result.parameters
     std = "for which the method gives no standard deviation"
     if p["method"] == "FilteredRegression":
         std = f"standard deviation {result.sigma_std:.2g} N.m/rad"
-    lines = [f"{result.log}", *(f"  {note}" for note in result.notes), ""]
+    notes = [*continued_in_words(result.learned_from), *(note.in_words for note in result.notes)]
+    lines = [f"{result.log}", *(f"  {note}" for note in notes), ""]
     lines += [
         f"method {p['method']}, modality {p['modality']}, T = {result.T:g} s, "
         f"rls.n = {p['rls.n']}, rls.m = {p['rls.m']}, "

@@ -15,10 +15,13 @@ from sigmahat.files.output import sha256
 from sigmahat.fmi.model import Value
 from sigmahat.motor.noise import low_pass
 from sigmahat.recording.configuration import Configuration
+from sigmahat.recording.counters import JointCounter
 from sigmahat.recording.estimator_parameters import all_parameters
+from sigmahat.recording.gaps import stretches
 from sigmahat.recording.log import Array, Log, LogError
+from sigmahat.recording.notes import RecordingNote
 from sigmahat.recording.replay import play
-from sigmahat.recording.resampling import Samples, stretches, turns_from
+from sigmahat.recording.sampling import Samples
 from sigmahat.result import sheet
 from sigmahat.result.curve import NORMAL_95
 from sigmahat.result.curve_of_log import union
@@ -168,7 +171,7 @@ class Validation:
     torque_below: TorqueError | None
     """Error of this torque below 2 Hz; None if the log is too short."""
     stiffness: Agreement  #: Stiffness from earlier logs compared with this log.
-    notes: Sequence[str]  #: Sentences about the processing of the samples of the log.
+    notes: Sequence[RecordingNote]  #: On reading the log and on its samples.
     turned: str | None
     """Returns a sentence if a counter began in another turn than in earlier logs, else None."""
 
@@ -222,7 +225,7 @@ class Validation:
             "z": both.z,
             "agree": self.agree,
             "fault": self.fault,
-            "notes": self.notes,
+            "notes": [note.as_dict() for note in self.notes],
         }
 
 
@@ -292,19 +295,22 @@ def _turned(
         return None
     low, high = reach
     center, most = (low + high) / 2, high - low
-    name, turns = turns_from(center, most, samples.values, configuration.ports)
-    if not turns:
+    counter = JointCounter.of(configuration.ports)
+    periods = 0 if counter is None else counter.periods_into(center, most, samples.values)
+    if counter is None or not periods:
         return None
+    port = counter.port
     return (
-        f"the counter of {name} began {-turns:+d} of its periods away from the logs of the learned "
-        "curve, so that the deformation is wrong: set range.phi to the largest deformation, "
-        f"{max(abs(low), abs(high)):.2g} rad or a little more, or ports.{name}.zero for this log"
+        f"the counter of {port} began {-periods:+d} of its periods away from the logs of the "
+        "learned curve, so that the deformation is wrong: set range.phi to the largest "
+        f"deformation, {max(abs(low), abs(high)):.2g} rad or a little more, or ports.{port}.zero "
+        "for this log"
     )
 
 
 def summary(result: Validation) -> str:
     both = result.stiffness
-    lines = [f"{result.log}", *(f"  {note}" for note in result.notes), ""]
+    lines = [f"{result.log}", *(f"  {note.in_words}" for note in result.notes), ""]
     lines += [
         f"learned before from {', '.join(result.learned_from)} ({result.start_from})",
         "",
