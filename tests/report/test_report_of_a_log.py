@@ -111,15 +111,20 @@ def test_limits_keep_what_belongs_to_the_signal() -> None:
         (CURVE, "a,b\n1,2\n", "expected a stiffness curve"),
         ("estimate.points.csv", "a,b\n1,2\n", "no numbers in column"),
         ("estimate.json", '{"format": "x"}', "expected the estimate.json"),
+        ("estimate.json", ('"kind": "rows"', '"kind": "x"'), "damaged: notes"),
+        ("estimate.json", ('"severity": "wrong"', '"severity": "x"'), "damaged: findings"),
+        ("estimate.json", ('"version": 3', '"version": 2'), "expected version 3 .* got 2"),
     ],
 )
 def test_a_damaged_file_is_named(
-    name: str, text: str | None, words: str, folder: Path, shell: Shell
+    name: str, text: str | tuple[str, str] | None, words: str, folder: Path, shell: Shell
 ) -> None:
     for path in (folder / "out").iterdir():
         if path.suffix != ".html":
             Path(path.name).symlink_to(path)
     Path(name).unlink()
+    if isinstance(text, tuple):
+        text = (folder / "out" / name).read_text().replace(*text)
     if text is not None:
         Path(name).write_text(text)
     line = shell.refused("report .")

@@ -57,7 +57,7 @@ def test_a_counter_that_begins_in_another_turn(shell: Shell) -> None:
     words = "theta: +8 periods of its counter, so that the deformation is in range.phi"
     assert moved.in_words == words
     assert moved.as_dict() in found["notes"]
-    value, half = found["stiffness of this log [N.m/rad]"]
+    value, half = found["stiffness_of_this_log"]
     assert abs(value - KNEE["spring.k_1"]) < half < 50
     # WHEN range.phi is not set, THEN the largest possible deformation is unknown.
     # THEN `validate` does not shift the motor angle, but reports the turns and the key to set.
@@ -72,8 +72,8 @@ def test_a_wrong_zero_is_no_fault_where_the_stiffness_is_right(shell: Shell) -> 
     """GIVEN a linear spring, THEN an offset of the deformation does not change the stiffness."""
     found = validate(shell, unwrapped("encoder zero 0"), 0)
     assert found["agree"] is True
-    for log in ("learned", "of this log"):
-        value, half = found[f"stiffness {log} [N.m/rad]"]
+    for log in ("learned", "of_this_log"):
+        value, half = found[f"stiffness_{log}"]
         assert abs(value - KNEE["spring.k_1"]) < half < 50
 
 

@@ -111,7 +111,8 @@ def as_dict(checked: Checked) -> dict[str, Any]:
     return {
         "wrong": checked.is_wrong,
         "ticks": checked.ticks,
-        "samplePeriod [s]": checked.T,
+        "samplePeriod": checked.T,
+        "units": {"samplePeriod": "s"},
         "findings": [each.as_dict() for each in checked.findings],
     }
 

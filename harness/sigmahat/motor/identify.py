@@ -149,8 +149,8 @@ def _notes(
     elif hidden:
         yield HiddenInertia()
     elif motor.contradicted and inertia is not None:
-        B = motor.quantities["B"].value
-        yield ContradictedInertia(B=B, configured=inertia.value, prior=inertia.std)
+        found = motor.quantities["B"].value
+        yield ContradictedInertia(found=found, configured=inertia.value, prior=inertia.std)
 
 
 def _set_points(pieces: Sequence[Signals], has_effect: bool) -> tuple[float, float]:

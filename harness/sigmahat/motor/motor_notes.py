@@ -57,15 +57,15 @@ class ContradictedInertia(Note):
     """The log shows another inertia of the motor than the configuration, beyond its prior."""
 
     kind: Literal["contradicted_inertia"] = "contradicted_inertia"
-    B: float  # by the log [kg.m2]
+    found: float  # by the log [kg.m2]
     configured: float  # motor.B [kg.m2]
     prior: float  # prior.B, relative standard deviation of motor.B [1]
 
     @property
     def in_words(self) -> str:
         return (
-            f"the log shows B = {self.B:.3g} kg.m2 where motor.B is {self.configured:.3g}, known "
-            f"to {100 * self.prior:.3g} %: it is not written, as the torque may have another scale "
-            "than the configuration says; check torque_constant, unit and gear_ratio of tau, and "
-            "motor.gamma, or remove motor.B"
+            f"the log shows B = {self.found:.3g} kg.m2 where motor.B is {self.configured:.3g}, "
+            f"known to {100 * self.prior:.3g} %: it is not written, as the torque may have another "
+            "scale than the configuration says; check torque_constant, unit and gear_ratio of tau, "
+            "and motor.gamma, or remove motor.B"
         )

@@ -1,7 +1,7 @@
 """Notes on the processing of a log for the user, as data; the sentence is made where it is shown.
 
 Each kind of note is a class. Its fields have the numbers, and in_words makes the sentence. In
-JSON, a note is an object with these fields, and `kind` says which it is. Times are in seconds.
+JSON, a note is an object with these fields, and `kind` says which it is.
 """
 
 from __future__ import annotations
@@ -11,6 +11,16 @@ from dataclasses import asdict, dataclass
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import ConfigDict, Field
+
+UNITS = {
+    "delay": "s",
+    "duration": "s",
+    "longest": "s",
+    "sample_interval": "s",
+    "sample_period": "s",
+    "t": "s",
+}
+"""Units of the fields of notes."""
 
 
 @dataclass(frozen=True)
@@ -160,14 +170,14 @@ class Interpolated(Note):
     kind: Literal["interpolated"] = "interpolated"
     port: str
     ticks: int
-    interval: float | None
+    sample_interval: float | None
     """Usual time between two samples [s]; None if nearly every tick has a sample."""
 
     @property
     def in_words(self) -> str:
         apart = ""
-        if self.interval is not None:
-            apart = f", its samples are {self.interval:.3g} s apart"
+        if self.sample_interval is not None:
+            apart = f", its samples are {self.sample_interval:.3g} s apart"
         return f"{self.port}: {self.ticks} ticks interpolated{apart}"
 
 
@@ -177,7 +187,7 @@ class FasterThanTicks(Note):
 
     kind: Literal["faster_than_ticks"] = "faster_than_ticks"
     port: str
-    interval: float  # usual time between two samples [s]
+    sample_interval: float  # usual time between two samples [s]
 
     @property
     def in_words(self) -> str:

@@ -185,9 +185,9 @@ def _notes_on(name: str, resampled: Resampled, rows: int, T: float) -> Iterator[
     interval = resampled.interval
     if resampled.interpolated:
         apart = None if resampled.is_even else interval
-        yield Interpolated(port=name, ticks=resampled.interpolated, interval=apart)
+        yield Interpolated(port=name, ticks=resampled.interpolated, sample_interval=apart)
     if interval < T * (1 - AT_TICK):
-        yield FasterThanTicks(port=name, interval=interval)
+        yield FasterThanTicks(port=name, sample_interval=interval)
     elif resampled.is_even and resampled.between:
         yield BetweenTicks(port=name, samples=resampled.between)
     missing = rows - resampled.samples

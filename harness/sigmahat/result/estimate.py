@@ -13,6 +13,7 @@ from sigmahat.files.output import sha256, write_json
 from sigmahat.files.tables import write_csv
 from sigmahat.fmi.model import Value, installed_model
 from sigmahat.fmi.series import Series
+from sigmahat.recording import notes
 from sigmahat.recording.configuration import Configuration
 from sigmahat.recording.log import Log
 from sigmahat.recording.notes import RecordingNote
@@ -28,12 +29,30 @@ from sigmahat.result.curve import (
     write_curve,
 )
 from sigmahat.result.curve_of_log import POINTS, Answer, write_points
-from sigmahat.result.data_sheet import UNITS, WORDS, data_sheet, priors
+from sigmahat.result.data_sheet import MOTOR, UNITS, WORDS, data_sheet, priors
 from sigmahat.result.estimate_table import MCAP, REPLAYED, EstimateWriter, Replayed, mcap_file
 from sigmahat.result.learned import LEARNED, read_learned, write_learned
 from sigmahat.result.replayed_log import Replay, StiffnessChange
 
 _MOTOR = ("D_theta_hat", "B_hat", "tau_coulomb_hat")
+_UNITS = {
+    "samplePeriod": "s",
+    "sigma": "N.m/rad",
+    "sigma_std": "N.m/rad",
+    "sigma_range": "N.m/rad",
+    "tau_e_range": "N.m",
+    "phi": "rad",
+    "phi_range": "rad",
+    "reach": "rad",
+    "epsilon_rms": "N.m",
+    "misfit": "1",
+    "relative": "1",
+    "sigma_per_gain": "1",
+    "tau_coulomb_hat": "N.m",
+    **{f"{name}_hat": unit or "1" for name, unit in {**MOTOR, **UNITS}.items()},
+    **notes.UNITS,
+}
+"""Units of the numbers with these keys in JSON; an interval has the unit of its value."""
 
 
 @dataclass(frozen=True)
@@ -80,28 +99,29 @@ class Estimate:
         return headline(self.curve, self.doubt_at_end)
 
     def as_dict(self) -> dict[str, Any]:
-        """Returns the result as a dictionary for JSON; names of the keys contain units."""
+        """Returns the result as a dictionary for JSON, with the units of its numbers by key."""
         return {
             "answer": self.headline,
+            "units": _UNITS,
             "log": str(self.log),
             "ticks": self.ticks,
             "skipped": self.skipped,
-            "samplePeriod [s]": self.T,
-            "sigma [N.m/rad]": self.sigma,
-            "sigma_std [N.m/rad]": self.sigma_std,
+            "samplePeriod": self.T,
+            "sigma": self.sigma,
+            "sigma_std": self.sigma_std,
             "confident": self.confident,
             "doubt": self.doubt,
             "misfit": self.misfit,
-            "sigma range [N.m/rad]": self.sigma_range,
-            "tau_e range [N.m]": self.tau_e_range,
-            "phi range [rad]": self.phi_range,
-            "epsilon rms [N.m]": self.epsilon_rms,
+            "sigma_range": self.sigma_range,
+            "tau_e_range": self.tau_e_range,
+            "phi_range": self.phi_range,
+            "epsilon_rms": self.epsilon_rms,
             "eta": self.eta,
             "curve": stiffness_points(self.curve),
             "motor": self.motor,
             "joint": self.joint,
             "sigma_per_gain": self.sigma_per_gain,
-            "changes": [{"t [s]": each.t, "relative": each.relative} for each in self.changes],
+            "changes": [asdict(change) for change in self.changes],
             "notes": [note.as_dict() for note in self.notes],
             "learned_from": self.learned_from,
             "parameters": self.parameters,
@@ -220,8 +240,8 @@ def summary(result: Estimate) -> str:
     std = "for which the method gives no standard deviation"
     if p["method"] == "FilteredRegression":
         std = f"standard deviation {result.sigma_std:.2g} N.m/rad"
-    notes = [*continued_in_words(result.learned_from), *(note.in_words for note in result.notes)]
-    lines = [f"{result.log}", *(f"  {note}" for note in notes), ""]
+    said = [*continued_in_words(result.learned_from), *(note.in_words for note in result.notes)]
+    lines = [f"{result.log}", *(f"  {sentence}" for sentence in said), ""]
     lines += [
         f"method {p['method']}, modality {p['modality']}, T = {result.T:g} s, "
         f"rls.n = {p['rls.n']}, rls.m = {p['rls.m']}, "

@@ -14,6 +14,7 @@ from sigmahat.estimator.estimator import Estimator
 from sigmahat.files.output import sha256
 from sigmahat.fmi.model import Value
 from sigmahat.motor.noise import low_pass
+from sigmahat.recording import notes
 from sigmahat.recording.configuration import Configuration
 from sigmahat.recording.counters import JointCounter
 from sigmahat.recording.estimator_parameters import all_parameters
@@ -36,6 +37,20 @@ _MOST_ERROR = 0.15
 a robot have up to 0.13 below 2 Hz (docs/robot.md), a log with a wrong zero has 0.19."""
 LOW = 2.0  # frequency of the low pass [Hz]
 _CHUNK = 1 << 16
+_UNITS = {
+    "rms": "N.m",
+    "std": "N.m",
+    "relative": "1",
+    "share": "1",
+    "stiffness_learned": "N.m/rad",
+    "stiffness_of_this_log": "N.m/rad",
+    "this_log_within_learned": "1",
+    "learned_within_this_log": "1",
+    "overlap": "1",
+    "z": "1",
+    **notes.UNITS,
+}
+"""Units of the numbers with these keys in JSON."""
 _SHORTEST = 2.0
 """Shortest stretch that is filtered: beyond both ends, the filter has no data [1/LOW]."""
 
@@ -62,9 +77,13 @@ class TorqueError:
         return TorqueError(rms, std, len(error) / ticks)
 
     def as_dict(self) -> dict[str, float]:
-        """For JSON; units are in the names."""
-        own = {"rms [N.m]": self.rms, "std [N.m]": self.std}
-        return {**own, "relative [1]": self.relative, "share": self.share}
+        """For JSON; the units are in _UNITS."""
+        return {
+            "rms": self.rms,
+            "std": self.std,
+            "relative": self.relative,
+            "share": self.share,
+        }
 
 
 def torque_errors(
@@ -206,9 +225,10 @@ class Validation:
         return None
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON; units are in the names."""
+        """For JSON, with the units of its numbers by key."""
         both = self.stiffness
         return {
+            "units": _UNITS,
             "log": str(self.log),
             "with": str(self.configuration),
             "start_from": str(self.start_from),
@@ -216,11 +236,11 @@ class Validation:
             "repeated": self.repeated,
             "ticks": self.ticks,
             "torque": self.torque and self.torque.as_dict(),
-            "torque below 2 Hz": self.torque_below and self.torque_below.as_dict(),
-            "stiffness learned [N.m/rad]": both.before,
-            "stiffness of this log [N.m/rad]": both.alone,
-            "this log within learned": both.alone_in_before,
-            "learned within this log": both.before_in_alone,
+            "torque_below_2_Hz": self.torque_below and self.torque_below.as_dict(),
+            "stiffness_learned": both.before,
+            "stiffness_of_this_log": both.alone,
+            "this_log_within_learned": both.alone_in_before,
+            "learned_within_this_log": both.before_in_alone,
             "overlap": both.overlap,
             "z": both.z,
             "agree": self.agree,
