@@ -1,7 +1,8 @@
 """Reads counters, which start again after a period: steps of one column, and gaps in two.
 
-A log is one call of a method for arrays, and a stream one call for each sample or tick of a method
-for one value. Both follow the same rule: with arrays of one value, a stream takes twice the time.
+A log is one call of a method for arrays; a stream is a call of a method for one value (`..._one`)
+at each sample or tick, because arrays of one value would take it twice as long. Both methods of a
+class follow the same rule.
 """
 
 import math

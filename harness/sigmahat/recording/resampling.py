@@ -5,8 +5,8 @@ between two samples has a value on the line through both, if they are not furthe
 longest gap. The value at any other tick is nan, and the estimator skips this tick.
 
 A log has all its ticks at once, resample(); a stream has one after the other, PortSamples. Both ask
-the same functions whether a tick has a value. They do not share the loop: with arrays of
-one sample, a stream would need twice the time.
+the same functions whether a tick has a value. They do not share the loop, because arrays of one
+sample would take a stream several times as long.
 """
 
 import math
