@@ -9,7 +9,8 @@ import numpy as np
 from sigmahat.guess.words import Meaning, meaning
 from sigmahat.recording.column import period_of_counter, step_of_encoder
 from sigmahat.recording.counters import Unwrapping
-from sigmahat.recording.log import Array, Log, LogError, check_together
+from sigmahat.recording.limits import check_together
+from sigmahat.recording.log import Array, Log, LogError
 from sigmahat.recording.units import seconds
 
 _MOSTLY = 0.99  # least fraction of increasing steps in a column of times

@@ -14,19 +14,15 @@ import pyarrow as pa
 import pyarrow.csv
 import pyarrow.parquet
 
-from sigmahat.recording.log import (
-    MOST_TEXT,
-    Array,
-    Log,
-    LogError,
-    check_columns,
-    check_numbers,
+from sigmahat.recording.arrow_columns import (
     first_text,
     fits_float64,
     holds_text,
     is_number,
     numbers,
 )
+from sigmahat.recording.limits import MOST_TEXT, check_columns, check_numbers
+from sigmahat.recording.log import Array, Log, LogError
 from sigmahat.recording.notes import Encoding, RowOfUnits, ShortRow
 
 _BLOCK = 1 << 20  # bytes of a CSV file that are parsed at a time
