@@ -176,6 +176,24 @@ def agreement(
 
 
 @dataclass(frozen=True)
+class TurnedCounter:
+    """The counter of theta or q began in another turn than in earlier logs."""
+
+    port: str  # theta or q
+    periods: int  # away from the earlier logs
+    phi: float  # largest magnitude of the deformation in the earlier logs [rad]
+
+    @property
+    def in_words(self) -> str:
+        return (
+            f"the counter of {self.port} began {self.periods:+d} of its periods away from the logs "
+            "of the learned curve, so that the deformation is wrong: set range.phi to the largest "
+            f"deformation, {self.phi:.2g} rad or a little more, or ports.{self.port}.zero for this "
+            "log"
+        )
+
+
+@dataclass(frozen=True)
 class Validation:
     """Comparison of a log with the estimate from earlier logs."""
 
@@ -191,8 +209,8 @@ class Validation:
     """Error of this torque below 2 Hz; None if the log is too short."""
     stiffness: Agreement  #: Stiffness from earlier logs compared with this log.
     notes: Sequence[RecordingNote]  #: On reading the log and on its samples.
-    turned: str | None
-    """Returns a sentence if a counter began in another turn than in earlier logs, else None."""
+    turned: TurnedCounter | None
+    """A counter that began in another turn than in earlier logs."""
 
     @property
     def agree(self) -> bool | None:
@@ -204,7 +222,7 @@ class Validation:
     def fault(self) -> str | None:
         """An error of the estimates, with its likely cause; None without an error."""
         if self.turned is not None:
-            return self.turned
+            return self.turned.in_words
         for which, (value, half) in (
             ("that was learned", self.stiffness.before),
             ("of this log", self.stiffness.alone),
@@ -308,24 +326,18 @@ def _points(samples: Samples, parameters: Mapping[str, Value]) -> tuple[Array, A
 
 def _turned(
     samples: Samples, configuration: Configuration, logs: Sequence[LearnedLog]
-) -> str | None:
-    """A sentence if the deformation differs from `logs` by whole periods of a counter."""
+) -> TurnedCounter | None:
+    """Returns a counter whose whole periods explain that the deformation differs from `logs`."""
     reach = union([each.phi for each in logs])
-    if reach is None:
+    counter = JointCounter.of(configuration.ports)
+    if reach is None or counter is None:
         return None
     low, high = reach
     center, most = (low + high) / 2, high - low
-    counter = JointCounter.of(configuration.ports)
-    periods = 0 if counter is None else counter.periods_into(center, most, samples.values)
-    if counter is None or not periods:
+    periods = counter.periods_into(center, most, samples.values)
+    if not periods:
         return None
-    port = counter.port
-    return (
-        f"the counter of {port} began {-periods:+d} of its periods away from the logs of the "
-        "learned curve, so that the deformation is wrong: set range.phi to the largest "
-        f"deformation, {max(abs(low), abs(high)):.2g} rad or a little more, or ports.{port}.zero "
-        "for this log"
-    )
+    return TurnedCounter(counter.port, -periods, max(abs(low), abs(high)))
 
 
 def summary(result: Validation) -> str:
