@@ -128,7 +128,7 @@ def _findings_table(folder: Path, values: Sequence[Mapping[str, Any]]) -> TextTa
     try:
         findings = findings_of(values)
     except ValidationError as error:
-        raise wrong_values(REPLAYED.path(folder), error) from error
+        raise wrong_values(REPLAYED.path(folder), error, ["findings"]) from error
     rows = [[finding.severity.value, sentence(finding)] for finding in findings]
     note = "" if rows else "The check found no error in the configuration."
     return TextTable("Checks", ["", "finding"], rows, (0, 1), note=note)

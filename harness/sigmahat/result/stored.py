@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Generic, TypeVar
@@ -51,10 +52,13 @@ _Contents = TypeVar("_Contents")
 _AGAIN = "run `sigmahat estimate` again"
 
 
-def wrong_values(path: Path, error: ValidationError) -> ValueError:
-    """Creates the error for a file with values that are missing or of a wrong type."""
+def wrong_values(path: Path, error: ValidationError, place: Sequence[str] = ()) -> ValueError:
+    """Creates the error for a file with values that are missing or of a wrong type.
+
+    place  keys above the values that were validated
+    """
     first = error.errors()[0]
-    where = ".".join(map(str, first["loc"]))
+    where = ".".join(map(str, (*place, *first["loc"])))
     return ValueError(f"{path}: damaged: {where}: {first['msg']}; {_AGAIN}")
 
 
