@@ -148,7 +148,7 @@ def table(axes: Sequence[Axis]) -> str:
         ]
         confident = ", ".join(f"{100 * each.confident:.0f}" for each in axis.estimated)
         errors = ", ".join(
-            f"{100 * each['torque below 2 Hz']['relative [1]']:.1f}" for each in axis.validated
+            f"{100 * each['torque_below_2_Hz']['relative']:.1f}" for each in axis.validated
         )
         lines.append(f"| {axis.number} | {' | '.join(values)} | {confident} % | {errors} % |")
     return "\n".join(lines)

@@ -35,7 +35,7 @@ from sigmahat.motor.quantities import Identified, Quantity
 from sigmahat.motor.signals import Signals
 from sigmahat.recording.configuration import read_configuration
 from sigmahat.recording.log import Array, LogInMemory
-from sigmahat.recording.units import convert
+from sigmahat.recording.units import Conversion
 
 Found = dict[float, Identified]
 AMPLITUDES = {0.1: 0.3, 0.3: 0.3, 1.0: 0.3, 3.0: 0.3, 8.0: 0.5}  # frequency [Hz]: [N.m]
@@ -228,7 +228,7 @@ def test_a_motor_that_is_off_shows_nothing_of_itself() -> None:
     """GIVEN a link moved by hand and a motor without torque, THEN no motor data are determined."""
     found, with_torque = (identified(log_by_hand(hold), RIGHT) for hold in (0.0, 0.05))
     assert not any(each.determined for each in found.quantities.values())
-    assert "only noise" in found.notes[-1]
+    assert "only noise" in found.notes[-1].in_words
     assert found.torque == 0
     assert with_torque.torque > 0 and len(with_torque.notes) == len(found.notes) - 1
 
@@ -267,7 +267,8 @@ def test_a_torque_of_another_scale_does_not_replace_a_known_inertia() -> None:
     wrong = RIGHT.replace("torque_constant", "gear_ratio = 100\ntorque_constant")
     found = identified(log, wrong)
     assert not found.quantities["B"].determined
-    assert "motor.B is 0.000105, known to 10 %: it is not written" in "".join(found.notes)
+    said = "".join(note.in_words for note in found.notes)
+    assert "motor.B is 0.000105, known to 10 %: it is not written" in said
     # WHEN prior.B allows any value of B, or the torque is right, THEN B is determined.
     for text in (wrong.replace("prior.B = 0.1", "prior.B = 1000"), RIGHT):
         assert identified(log, text).quantities["B"].determined
@@ -298,7 +299,7 @@ def test_one_sine_of_a_free_load_does_not_tell_its_inertia_from_the_motors(
     encoders = ["encoder.theta = 819200", "encoder.q = 32768", "samplePeriod = 0.002"]
     found = identified(free_load(frequencies), configured("motor.gamma = 50", *encoders))
     assert found.quantities["B"].determined is shown
-    assert any("the inertia of the load" in note for note in found.notes) is not shown
+    assert any("the inertia of the load" in note.in_words for note in found.notes) is not shown
     if shown:
         assert found.quantities["B"].value == pytest.approx(8e-5, rel=0.1)
 
@@ -313,7 +314,8 @@ def test_a_stiffness_that_changes_in_the_log_does_not_look_like_inertia(factor: 
     joint = Joint(duration=24.0, stiffness=stiffness)
     found = identified(recorded(joint), configured("motor.gamma = 50"))
     assert found.quantities["B"].value == pytest.approx(TRUE["B"], rel=0.03)
-    times = re.findall(r"the stiffness changes after (\S+) s", "".join(found.notes))
+    said = "".join(note.in_words for note in found.notes)
+    times = re.findall(r"the stiffness changes after (\S+) s", said)
     assert [float(t) for t in times] == ([] if factor == 1 else [pytest.approx(12.0, abs=0.3)])
 
 
@@ -329,7 +331,7 @@ def test_the_zero_is_where_the_spring_has_no_torque(path: Path) -> None:
     assert abs(zero.value - offset) <= zero.half_width < 5e-3
     assert found.phi == pytest.approx(np.max(np.abs(true - log["theta"])), abs=zero.half_width)
     assert "ports.q.zero" in write(found, path)
-    q = convert("q", read_configuration(path).ports["q"], log["q"])
+    q = Conversion.of("q", read_configuration(path).ports["q"]).apply(log["q"])
     assert np.max(np.abs(q - true)) <= zero.half_width
     # THEN a second run of `identify` does not change the zero of the encoder.
     again = identified(log, path.read_text())

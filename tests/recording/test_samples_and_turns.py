@@ -10,7 +10,7 @@ from recorded_logs import configured, in_memory
 from sigmahat.recording.configuration import Configuration, Port, Time
 from sigmahat.recording.estimator_parameters import parameters
 from sigmahat.recording.log import LogError, LogInMemory
-from sigmahat.recording.resampling import Samples, sample
+from sigmahat.recording.sampling import Samples, sample
 
 GEAR, COUNTS, T = 80, 2**14, 2e-3
 PERIOD = 2 * np.pi / GEAR  # period of the motor counter, after the gear [rad]
@@ -43,7 +43,7 @@ def test_turns_during_a_gap_are_those_of_the_other_encoder(gap: slice) -> None:
     known = np.isfinite(found)
     np.testing.assert_allclose(found[known], theta[known], atol=PERIOD / COUNTS)
     turns = round((theta[gap.stop] - theta[gap.start - 1]) / PERIOD)
-    noted = [note for note in samples.notes if "periods of its counter" in note]
+    noted = [note for note in samples.notes if "periods of its counter" in note.in_words]
     assert len(noted) == (abs(turns) > 0)
 
 
@@ -54,7 +54,8 @@ def test_rows_that_are_lost_are_ticks_without_a_value_as_empty_cells_are() -> No
     for columns in ({"t": np.delete(t, lost), "x": np.delete(empty, lost)}, {"t": t, "x": empty}):
         found = sampled(columns, {"q": Port("x")})
         np.testing.assert_array_equal(found.values[:, 0], empty)
-        assert "300 ticks skipped in 1 gaps, the longest of 0.6 s at 0.8 s" in found.notes[-1]
+        said = found.notes[-1].in_words
+        assert "300 ticks skipped in 1 gaps, the longest of 0.6 s at 0.8 s" in said
 
 
 def test_slow_and_uneven_columns_are_interpolated() -> None:
@@ -65,7 +66,7 @@ def test_slow_and_uneven_columns_are_interpolated() -> None:
     found = sampled({"t": t, "x": 3 * t, "slow": slow}, ports)
     at = t[0] + T * np.arange(len(found.values))
     np.testing.assert_allclose(found.values[:980], np.outer(at, [3, 5])[:980], atol=3e-3 * T)
-    said = "\n".join(found.notes)
+    said = "\n".join(note.in_words for note in found.notes)
     assert re.search(r"theta: 9\d\d ticks interpolated", said)
     assert re.search(r"theta_c: 9\d\d ticks interpolated, its samples are 0.0[12]\d* s apart", said)
 
@@ -86,7 +87,7 @@ def test_filters_are_not_faster_than_the_samples(period: float, rate: float | No
 
 def test_a_slow_log_and_one_with_a_pause(monkeypatch: pytest.MonkeyPatch) -> None:
     """A log with very many ticks may have at most 20 ticks for each row."""
-    monkeypatch.setattr("sigmahat.recording.resampling._MOST_TICKS", 500_000)
+    monkeypatch.setattr("sigmahat.recording.sampling._MOST_TICKS", 500_000)
     rows = 51_000
     columns = dict.fromkeys(("motor", "link", "torque"), np.arange(rows, dtype=np.float64))
 

@@ -8,15 +8,20 @@ from pathlib import Path
 import numpy as np
 import pyarrow as pa
 import pytest
+from pydantic import TypeAdapter
 
 from browser import DATA, ROWS, Page, opened
 from command_line import Shell, working_in
 from recorded_logs import REGRESSION, awas_log, write_log
+from sigmahat.checks.findings import Finding, Kind, Severity
+from sigmahat.recording.notes import RecordingNote
 from sigmahat.result.curve import CURVE
 from sigmahat.show.style import limits
 
 GAP = slice(20_000, 20_200)
 SPIKE = 5.0
+FINDING = Finding(Kind.JUMP, Severity.WRONG, "ports.q.column", 50.0, "deg", about="<q>")
+NOTES = TypeAdapter(list[RecordingNote])
 
 
 @pytest.fixture(scope="module")
@@ -32,7 +37,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
         answer = Shell().run("estimate knee.parquet --out out --json")
         Path("answer.json").write_text(answer)
         notes = json.loads(Path("out/estimate.json").read_text())
-        notes["findings"] = [["wrong", "motor.gamma: 50, expected <100>"]]
+        notes["findings"] = [FINDING.as_dict()]
         Path("out/estimate.json").write_text(json.dumps(notes))
         Shell().run("report out")
     return folder
@@ -65,9 +70,9 @@ def test_ticks_notes_parameters_and_findings(folder: Path, page: Page) -> None:
     findings = page.run(ROWS, "Checks")
     every = page.run(ROWS, "Parameters of the estimator")
     assert f"201 of {answer['ticks']} ticks skipped, a tick every 0.001 s" in text
-    for note in answer["notes"]:
-        assert note in text
-    assert findings == ["wrong motor.gamma: 50, expected <100>"]
+    for note in NOTES.validate_python(answer["notes"]):
+        assert note.in_words in text
+    assert findings == ["wrong ports.q.column: <q> jumps by 50 deg, as a counter that starts again"]
     inertia = sheet["parameters"]["B"]
     low, high = inertia["interval"]
     (row,) = (row for row in parameters if " B " in row)
@@ -106,15 +111,20 @@ def test_limits_keep_what_belongs_to_the_signal() -> None:
         (CURVE, "a,b\n1,2\n", "expected a stiffness curve"),
         ("estimate.points.csv", "a,b\n1,2\n", "no numbers in column"),
         ("estimate.json", '{"format": "x"}', "expected the estimate.json"),
+        ("estimate.json", ('"kind": "rows"', '"kind": "x"'), "damaged: notes"),
+        ("estimate.json", ('"severity": "wrong"', '"severity": "x"'), "damaged: findings"),
+        ("estimate.json", ('"version": 3', '"version": 2'), "expected version 3 .* got 2"),
     ],
 )
 def test_a_damaged_file_is_named(
-    name: str, text: str | None, words: str, folder: Path, shell: Shell
+    name: str, text: str | tuple[str, str] | None, words: str, folder: Path, shell: Shell
 ) -> None:
     for path in (folder / "out").iterdir():
         if path.suffix != ".html":
             Path(path.name).symlink_to(path)
     Path(name).unlink()
+    if isinstance(text, tuple):
+        text = (folder / "out" / name).read_text().replace(*text)
     if text is not None:
         Path(name).write_text(text)
     line = shell.refused("report .")

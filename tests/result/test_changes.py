@@ -11,7 +11,7 @@ from command_line import Shell
 from recorded_logs import REGRESSION, read_estimate, recorded, write_log
 from regression_joint import Joint
 from sigmahat.result.curve_of_log import since_change
-from sigmahat.result.replayed_log import Changes
+from sigmahat.result.replayed_log import Changes, StiffnessChange
 
 MARKS = """
 return [...Bokeh.documents[0]._all_models.values()]
@@ -23,16 +23,17 @@ def test_a_step_has_its_time_its_size_and_its_mark(shell: Shell) -> None:
     joint = Joint(duration=24.0, stiffness=lambda t: np.where(t < 12.0, 1.0, 0.5))
     write_log(recorded(joint), Path("log.parquet"), REGRESSION)
     (change,) = shell.json("estimate log.parquet --out out")["changes"]
-    assert 12.0 < change["t [s]"] < 17.0
+    assert 12.0 < change["t"] < 17.0
     assert change["relative"] == pytest.approx(-0.5, abs=0.05)
-    words = f"the stiffness changed by {100 * change['relative']:+.0f} % at {change['t [s]']:.4g} s"
-    assert words in json.loads(Path("out/estimate.json").read_text())["notes"]
+    words = f"the stiffness changed by {100 * change['relative']:+.0f} % at {change['t']:.4g} s"
+    (written,) = json.loads(Path("out/estimate.json").read_text())["changes"]
+    assert StiffnessChange(**written).in_words == words
     # THEN the table of estimates has no coefficients, and the report marks the time of the change
     assert not any("eta[" in name for name in read_estimate(Path("out")).column_names)
     shell.run("report out --quiet")
     with opened(Path("out/report.html").absolute()) as page:
         marks = np.array(page.run(MARKS))
-        assert len(marks) > 3 and np.allclose(marks, change["t [s]"])
+        assert len(marks) > 3 and np.allclose(marks, change["t"])
         text = page.run("return document.body.textContent")
     assert words in text and "Dotted lines mark changes of the stiffness" in text
 

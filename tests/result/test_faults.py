@@ -9,6 +9,7 @@ import pytest
 from checked_logs import COUNTS, KNEE, RIGHT, WRONG, as_recorded, joint_log
 from command_line import Shell
 from recorded_logs import write_log
+from sigmahat.recording.notes import CounterAtStart
 
 WRAPPED = RIGHT.replace("zero = 1500", "zero = 1500\nwrap = 4096").replace(
     "rls.n = 1", "rls.n = 6\nrls.symmetric = false"
@@ -52,15 +53,17 @@ def test_a_counter_that_begins_in_another_turn(shell: Shell) -> None:
     found = validate(shell, WRAPPED, 0)
     assert found["agree"] is True and found["fault"] is None
     # THEN `validate` shifts the motor angle by 8 counter periods, which are 8 turns or 0.5 rad.
-    moved = "theta: +8 periods of its counter, so that the deformation is in range.phi"
-    assert moved in found["notes"]
-    value, half = found["stiffness of this log [N.m/rad]"]
+    moved = CounterAtStart(port="theta", periods=8)
+    words = "theta: +8 periods of its counter, so that the deformation is in range.phi"
+    assert moved.in_words == words
+    assert moved.as_dict() in found["notes"]
+    value, half = found["stiffness_of_this_log"]
     assert abs(value - KNEE["spring.k_1"]) < half < 50
     # WHEN range.phi is not set, THEN the largest possible deformation is unknown.
     # THEN `validate` does not shift the motor angle, but reports the turns and the key to set.
     found = validate(shell, WRAPPED.replace("range.phi = 0.03\n", ""), 1)
     assert not found["agree"]
-    assert not any("periods of its counter" in note for note in found["notes"])
+    assert not any(note["kind"].startswith("counter") for note in found["notes"])
     assert "the counter of theta began -8 of its periods away" in found["fault"]
     assert "range.phi" in found["fault"] and "ports.theta.zero" in found["fault"]
 
@@ -69,8 +72,8 @@ def test_a_wrong_zero_is_no_fault_where_the_stiffness_is_right(shell: Shell) -> 
     """GIVEN a linear spring, THEN an offset of the deformation does not change the stiffness."""
     found = validate(shell, unwrapped("encoder zero 0"), 0)
     assert found["agree"] is True
-    for log in ("learned", "of this log"):
-        value, half = found[f"stiffness {log} [N.m/rad]"]
+    for log in ("learned", "of_this_log"):
+        value, half = found[f"stiffness_{log}"]
         assert abs(value - KNEE["spring.k_1"]) < half < 50
 
 

@@ -36,7 +36,7 @@ def test_the_stiffness_of_axis_3_is_found(study: Study) -> None:
     assert abs(a.stiffness - b.stiffness) <= 1.96 * min(a.std, b.std)
     # THEN the estimated spring predicts the torque of the other run.
     for other in axis.validated:
-        assert other["torque below 2 Hz"]["relative [1]"] <= 0.13
+        assert other["torque_below_2_Hz"]["relative"] <= 0.13
         assert other["agree"]
 
 

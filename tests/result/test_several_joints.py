@@ -44,7 +44,7 @@ def test_from_the_log_to_one_report(shell: Shell) -> None:
 
     found = shell.json("estimate leg.csv")["joints"]
     for name in ("hip", "knee"):
-        low, high = found[name]["curve"][1]["interval [N.m/rad]"]
+        low, high = found[name]["curve"][1]["interval"]
         assert low < STIFFNESS < high
         assert high - low < 0.12 * STIFFNESS
         assert found[name]["answer"].endswith("confident")

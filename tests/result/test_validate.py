@@ -1,6 +1,8 @@
 """`sigmahat validate` tests whether a second log of a joint confirms the estimated stiffness."""
 
+import re
 import shutil
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -36,6 +38,29 @@ def knee(folder: Path, shell: Shell) -> Shell:
 WITH = "--with knee.toml"
 
 
+def keys(values: object) -> Iterator[str]:
+    """All keys in a JSON document, at any depth."""
+    if isinstance(values, dict):
+        yield from values
+    if isinstance(values, (dict, list)):
+        for value in values.values() if isinstance(values, dict) else values:
+            yield from keys(value)
+
+
+@pytest.mark.parametrize(
+    ("command", "status"),
+    [("estimate", 0), ("check", 0), ("identify --dry-run", 0), (f"validate {WITH}", 1)],
+)
+def test_keys_of_json_are_identifiers_and_units_stand_beside_them(
+    knee: Shell, command: str, status: int
+) -> None:
+    name, *options = command.split()
+    values = knee.json(" ".join([name, "knee.parquet", *options]), status)
+    assert not [key for key in keys(values) if re.search(r"[\s\[]", key)]
+    assert values["units"].keys() & {*keys({**values, "units": {}})}
+    assert all(note["kind"].isidentifier() for note in values.get("notes", []))
+
+
 def test_another_log_of_the_same_joint_agrees_and_a_softer_spring_does_not(knee: Shell) -> None:
     same = knee.json(f"validate same.parquet {WITH}")
     assert knee.err == ""
@@ -43,15 +68,15 @@ def test_another_log_of_the_same_joint_agrees_and_a_softer_spring_does_not(knee:
     assert same["z"] < 1.96
     assert same["learned_from"] == ["knee.parquet"]
     assert same["start_from"] == "sigmahat-results/knee/state.json"
-    assert same["this log within learned"] > 0.9 and same["learned within this log"] > 0.9
+    assert same["this_log_within_learned"] > 0.9 and same["learned_within_this_log"] > 0.9
     assert same["overlap"] > 0.99
     # THEN the model predicts the torque, and even better below 2 Hz, where noise is smaller.
-    assert same["torque"]["relative [1]"] < 0.05
-    assert same["torque below 2 Hz"]["relative [1]"] < 0.02
+    assert same["torque"]["relative"] < 0.05
+    assert same["torque_below_2_Hz"]["relative"] < 0.02
     assert 0.9 < same["torque"]["share"] <= 1.0
     # THEN the stiffness equals the median of the true stiffness over the log.
     true = np.median(awas_log(1.3, 0.3, DURATION, seed=2)["true"])
-    learned, alone = "stiffness learned [N.m/rad]", "stiffness of this log [N.m/rad]"
+    learned, alone = "stiffness_learned", "stiffness_of_this_log"
     for name in (learned, alone):
         value, half = same[name]
         assert abs(value - true) < half + 0.02 * true
@@ -59,11 +84,11 @@ def test_another_log_of_the_same_joint_agrees_and_a_softer_spring_does_not(knee:
     softer = knee.json(f"validate softer.parquet {WITH}", 1)
     assert softer["agree"] is False
     assert softer["z"] > 3
-    assert softer["this log within learned"] < 0.1 and softer["learned within this log"] < 0.1
+    assert softer["this_log_within_learned"] < 0.1 and softer["learned_within_this_log"] < 0.1
     # THEN the model of the first log leaves 10 to 25 % of the torque unexplained.
-    for name in ("torque", "torque below 2 Hz"):
-        assert 0.1 < softer[name]["relative [1]"] < 0.25
-        assert softer[name]["relative [1]"] > 5 * same[name]["relative [1]"]
+    for name in ("torque", "torque_below_2_Hz"):
+        assert 0.1 < softer[name]["relative"] < 0.25
+        assert softer[name]["relative"] > 5 * same[name]["relative"]
     assert softer[alone][0] / softer[learned][0] == pytest.approx(0.8, abs=0.08)
 
 
@@ -71,7 +96,7 @@ def test_a_log_without_motion_cannot_tell_and_nothing_is_written(knee: Shell) ->
     before = {path: path.stat().st_mtime_ns for path in Path().rglob("*")}
     result = knee.json(f"validate still.parquet {WITH}", 1)
     assert result["agree"] is None
-    assert result["torque"] is None and result["torque below 2 Hz"] is None
+    assert result["torque"] is None and result["torque_below_2_Hz"] is None
     start = "--start-from sigmahat-results/knee/state.json"
     text = knee.run(f"validate still.parquet {WITH} {start}", 1)
     assert "cannot tell: too few samples in motion" in text
@@ -84,7 +109,7 @@ def test_a_log_that_was_learned_from_confirms_nothing(knee: Shell) -> None:
     assert result["repeated"] is True and result["agree"] is None
     # THEN both stiffnesses are exactly equal, as both come from the same state of the estimator.
     assert result["z"] == 0.0
-    assert result["stiffness learned [N.m/rad]"] == result["stiffness of this log [N.m/rad]"]
+    assert result["stiffness_learned"] == result["stiffness_of_this_log"]
 
 
 @pytest.mark.parametrize(

@@ -1,11 +1,23 @@
 """Data types for the findings of a check; text.py converts findings to sentences."""
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from enum import Enum
-from typing import Any
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator, TypeAdapter
 
 from sigmahat.motor.hypotheses.hypothesis import Setting
+
+
+def _of_json(others: object) -> object:
+    return list(others.items()) if isinstance(others, Mapping) else others
+
+
+# pydantic reads these from JSON, which has null for nan, and an object for pairs.
+_Measured = Annotated[float, BeforeValidator(lambda value: math.nan if value is None else value)]
+_Others = Annotated[Sequence[tuple[str, Setting | None]], BeforeValidator(_of_json)]
 
 
 class Severity(str, Enum):
@@ -56,16 +68,20 @@ class Finding:
     severity: Severity  #: How much the finding matters.
     key: str
     """The key of the configuration to look at first, as "ports.tau.sign" or "motor.gamma"."""
-    measured: float  #: What the log shows, in `unit`.
+    measured: _Measured  #: What the log shows, in `unit`.
     unit: str  #: Unit of `measured` and `expected`; "" for a number without a unit.
     expected: float | None = None
     """The configured or the usual value, in `unit`; None if no such value exists."""
     proposed: Setting | None = None
     """A value of the key that agrees with the log; None if the log shows no such value."""
-    others: Sequence[tuple[str, Setting | None]] = ()
+    others: _Others = ()
     """Other keys that would explain the finding, each key with the value required."""
     about: str = ""
     """Detail of the kind: a port, a parameter of the FMU, or an item of the FMU's output doubt."""
+
+    def as_dict(self) -> dict[str, Any]:
+        """Returns the finding for JSON."""
+        return asdict(self) | {"others": dict(self.others)}
 
     @property
     def keys(self) -> Sequence[str]:
@@ -95,6 +111,12 @@ def as_dict(checked: Checked) -> dict[str, Any]:
     return {
         "wrong": checked.is_wrong,
         "ticks": checked.ticks,
-        "samplePeriod [s]": checked.T,
-        "findings": [asdict(f) | {"others": dict(f.others)} for f in checked.findings],
+        "samplePeriod": checked.T,
+        "units": {"samplePeriod": "s"},
+        "findings": [each.as_dict() for each in checked.findings],
     }
+
+
+def findings_of(values: Sequence[Mapping[str, Any]]) -> list[Finding]:
+    """Reads findings from as_dict(). Raises ValidationError for values that are no findings."""
+    return TypeAdapter(list[Finding]).validate_python(values)

@@ -12,8 +12,8 @@ from sigmahat.motor.log_view import LogView
 from sigmahat.motor.noise import is_only_noise
 from sigmahat.recording.column import RARE, restart, share_at_ends, spikes
 from sigmahat.recording.configuration import Port
+from sigmahat.recording.counters import Unwrapping
 from sigmahat.recording.log import Array
-from sigmahat.recording.units import unwrap
 
 
 def of_columns(view: LogView) -> Iterator[Finding]:
@@ -56,7 +56,7 @@ def _of_jump(name: str, port: Port, values: Array) -> Iterator[Finding]:
 
 def _of_spikes(name: str, port: Port, values: Array, step: float) -> Iterator[Finding]:
     if port.wrap is not None:
-        values, _ = unwrap(values, port.wrap)
+        values = Unwrapping(port.wrap).unwrap(values)
     lost = spikes(values, step)
     if lost is not None:
         key, unit, number = f"ports.{name}.column", port.unit or "rad", float(lost.number)

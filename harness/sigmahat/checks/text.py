@@ -42,11 +42,6 @@ def nothing_found(checked: Checked) -> str:
     return f"checked: nothing in {seconds} of the log contradicts the configuration"
 
 
-def rows(checked: Checked) -> list[tuple[str, str]]:
-    """Returns severity and sentence of each finding."""
-    return [(each.severity.value, sentence(each)) for each in checked.findings]
-
-
 def sentence(finding: Finding) -> str:
     """Describes a finding in one line: the key, the error, and the proposed value."""
     return f"{finding.key}: {_what(finding)}{_proposal(finding)}"

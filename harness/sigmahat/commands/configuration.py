@@ -52,7 +52,7 @@ def init(log: Path, config: Path, joint: str | None, force: bool) -> None:
             guessed = {"": one_joint(opened, guessed, joint)}
         common.refuse_to_overwrite(config, force, "--config")
         write_whole(template.write(opened, columns, guessed), config)
-    notes = [*opened.notes, *columns.unreadable]
+    notes = [*(note.in_words for note in opened.notes), *columns.unreadable]
     common.answer("\n".join([*notes, _text(log, guessed, config)]))
 
 

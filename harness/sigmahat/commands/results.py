@@ -85,7 +85,6 @@ def _estimated(
 ) -> tuple[Estimate, Checked]:
     """Writes the files of a joint. Returns its estimate and the result of the checks."""
     from sigmahat.checks.check import check
-    from sigmahat.checks.text import rows
     from sigmahat.files.output import output_folder
     from sigmahat.result import estimate as job
 
@@ -95,8 +94,9 @@ def _estimated(
     if start_from is not None and start_from.is_dir():
         start_from /= configuration.joint
     with common.progress("Replaying", 1000) as bar, output_folder(own) as folder:
+        findings = [each.as_dict() for each in checked.findings]
         result = job.estimate(
-            log, configuration, folder, bar.update, start_from, to == "mcap", rows(checked)
+            log, configuration, folder, bar.update, start_from, to == "mcap", findings
         )
     return result, checked
 

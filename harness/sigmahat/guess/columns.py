@@ -8,8 +8,10 @@ import numpy as np
 
 from sigmahat.guess.words import Meaning, meaning
 from sigmahat.recording.column import period_of_counter, step_of_encoder
-from sigmahat.recording.log import Array, Log, LogError, check_together
-from sigmahat.recording.units import seconds, unwrap
+from sigmahat.recording.counters import Unwrapping
+from sigmahat.recording.limits import check_together
+from sigmahat.recording.log import Array, Log, LogError
+from sigmahat.recording.units import seconds
 
 _MOSTLY = 0.99  # least fraction of increasing steps in a column of times
 _NAMED = 0.8  # least fraction of increasing steps in a column that is named as times
@@ -56,7 +58,7 @@ def look_at(log: Log, name: str) -> tuple[Facts, Array]:
     ends = float(finite.min()), float(finite.max())
     step = 1.0 if integer else step_of_encoder(finite, _STEPS)
     facts = Facts(*ends, integer, not few, increasing, step, wrap)
-    return facts, values if wrap is None else unwrap(values, wrap)[0]
+    return facts, values if wrap is None else Unwrapping(wrap).unwrap(values)
 
 
 def is_clock(meaning: Meaning, facts: Facts, values: Array) -> bool:

@@ -9,7 +9,7 @@ from sigmahat.motor.signals import signals_of
 from sigmahat.recording.configuration import Configuration
 from sigmahat.recording.estimator_parameters import all_parameters
 from sigmahat.recording.log import Log, LogError
-from sigmahat.recording.resampling import sample
+from sigmahat.recording.sampling import sample
 from sigmahat.result.curve import stiffness_in_the_middle
 from sigmahat.result.estimate import Estimate, estimate
 

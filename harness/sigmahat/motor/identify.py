@@ -15,6 +15,7 @@ from sigmahat.fmi.model import Value
 from sigmahat.motor.coherence import is_hidden, pass_band
 from sigmahat.motor.log_view import first_part
 from sigmahat.motor.motor_fit import KnownInertia, MotorFit, fit_motor
+from sigmahat.motor.motor_notes import ContradictedInertia, HiddenInertia, NoTorque, SpringChanges
 from sigmahat.motor.noise import count, is_only_noise, low_pass
 from sigmahat.motor.quantities import Identified, Quantity
 from sigmahat.motor.signals import Signals, set_point_moves, shortest
@@ -28,8 +29,10 @@ from sigmahat.motor.spring import (
 )
 from sigmahat.recording.configuration import Configuration
 from sigmahat.recording.estimator_parameters import parameters
+from sigmahat.recording.gaps import stretches
 from sigmahat.recording.log import Array, Log, LogError
-from sigmahat.recording.resampling import Samples, stretches
+from sigmahat.recording.notes import Note
+from sigmahat.recording.sampling import Samples
 
 _FEWEST = 1000  # least number of samples kept from the longest stretch of a slow motion
 _RESOLVED = 0.07
@@ -38,24 +41,6 @@ Hz, other values reduce the coverage of the intervals. A value of 0.05 is too sl
 signals are not linear between samples."""
 _V_A = tuple(10.0**e for e in np.arange(5.0, 13.1, 0.5))
 _V_A_TICKS = 10000
-_NO_TORQUE = (
-    "the torque of the motor is only noise: such a log does not show its inertia and friction, and "
-    "they have to be known for the stiffness; record with the motor on"
-)
-_CHANGES = (
-    "the stiffness changes after {t:.4g} s of the log: identified with one spring before, and "
-    "another one after it"
-)
-_CONTRADICTED = (
-    "the log shows B = {found:.3g} kg.m2 where motor.B is {given:.3g}, known to {std:.3g} %: it "
-    "is not written, as the torque may have another scale than the configuration says; check "
-    "torque_constant, unit and gear_ratio of tau, and motor.gamma, or remove motor.B"
-)
-_HIDDEN = (
-    "the deformation is proportional to the acceleration of the motor, but for the rounding of the "
-    "encoders: the log cannot tell the inertia of the motor from the inertia of the load; record "
-    "more frequencies, or give motor.B and prior.B"
-)
 _SLOWEST = 0.25  # largest sample period [s]: the duration of a block of errors
 _V_A_HIGHEST = 0.1  # highest low pass of the reference velocity, in sampling frequencies
 
@@ -112,7 +97,6 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
     motor = fit_motor(springs, h, gamma, symmetric, f_0, inertia)
     quantities = dict(motor.quantities)
     no_torque = all(is_only_noise(piece.tau) for piece in pieces)
-    changed = None if change is None else change * h
     if no_torque or hidden:
         quantities = {
             name: Quantity(math.nan, math.inf, quantity.unit, determined=False)
@@ -148,25 +132,25 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
         else max(spring, *(abs(gamma) * float(np.max(np.abs(piece.tau))) for piece in pieces)),
         B=float(view.parameters["motor.B"]),
         D_theta=float(view.parameters["motor.D_theta"]),
-        notes=[*samples.notes, *_notes(changed, motor, inertia, no_torque, hidden)],
+        notes=[
+            *samples.notes,
+            *([] if change is None else [SpringChanges(t=change * h)]),
+            *_notes(motor, inertia, no_torque, hidden),
+        ],
     )
 
 
 def _notes(
-    changed: float | None,
-    motor: MotorFit,
-    inertia: KnownInertia | None,
-    no_torque: bool,
-    hidden: bool,
-) -> Iterator[str]:
-    """Yields notes on problems of the log; changed: time at which the stiffness changes [s]."""
-    if changed is not None:
-        yield _CHANGES.format(t=changed)
-    if no_torque or hidden:
-        yield _NO_TORQUE if no_torque else _HIDDEN
+    motor: MotorFit, inertia: KnownInertia | None, no_torque: bool, hidden: bool
+) -> Iterator[Note]:
+    """Yields notes on why the log does not show the motor."""
+    if no_torque:
+        yield NoTorque()
+    elif hidden:
+        yield HiddenInertia()
     elif motor.contradicted and inertia is not None:
-        found, std = motor.quantities["B"].value, 100 * inertia.std
-        yield _CONTRADICTED.format(found=found, given=inertia.value, std=std)
+        found = motor.quantities["B"].value
+        yield ContradictedInertia(found=found, configured=inertia.value, prior=inertia.std)
 
 
 def _set_points(pieces: Sequence[Signals], has_effect: bool) -> tuple[float, float]:

@@ -12,7 +12,8 @@ from sigmahat.motor.signals import Signals, signals_of
 from sigmahat.recording.configuration import Configuration
 from sigmahat.recording.estimator_parameters import all_parameters
 from sigmahat.recording.log import Array, Log
-from sigmahat.recording.resampling import Samples, sample
+from sigmahat.recording.notes import FirstPart
+from sigmahat.recording.sampling import Samples, sample
 
 _MOST = 60_000
 """Largest number of ticks of a check; from a longer log, the part with the most motion is used."""
@@ -114,7 +115,7 @@ def _beginning(samples: Samples) -> Samples:
     return replace(
         samples,
         values=samples.values[: round(_LONGEST / samples.T)],
-        notes=[*samples.notes, f"used the first {_LONGEST:g} s"],
+        notes=[*samples.notes, FirstPart(duration=_LONGEST)],
     )
 
 

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from sigmahat.motor.equation import COULOMB_VELOCITY
+from sigmahat.recording import notes
+from sigmahat.recording.notes import Note
 
 WIDE = 1.0
 """Relative prior of motor data that the log does not determine. With a prior of 0, motor data count
@@ -67,12 +69,33 @@ class Identified:
     """Largest magnitude of the torque of the motor after its gear, or of the spring [N.m]."""
     B: float  #: Motor inertia of the configuration [kg.m2].
     D_theta: float  #: Viscous friction of the configuration [N.m.s/rad].
-    notes: Sequence[str]  #: Sentences about the processing of the samples of the log.
+    notes: Sequence[Note]  #: On reading the log, on its samples and on the motor.
+
+
+_UNITS = {
+    "tau_noise_variance": "(N.m)2",
+    "theta_noise_variance": "rad2",
+    "filter_bandwidth": "rad/s",
+    "filter.V_a": "rad2/s4",
+    "deformation_is_noise_above": "Hz",
+    "zero_of_deformation": "rad",
+    "knees": "rad",
+    "largest_phi": "rad",
+    "largest_setPoint_distance": "1",
+    "setPoint_center": "1",
+    "largest_gamma_tau": "N.m",
+    "found": "kg.m2",
+    "configured": "kg.m2",
+    "prior": "1",
+    **notes.UNITS,
+}
+"""Units of the numbers with these keys in JSON; each identified parameter has its own `unit`."""
 
 
 def as_dict(identified: Identified) -> dict[str, Any]:
-    """Returns the result as a dictionary for JSON, with units in the keys."""
+    """Returns the result as a dictionary for JSON, with the units of its numbers by key."""
     return {
+        "units": _UNITS,
         **{
             name: {
                 "value": quantity.value if quantity.determined else None,
@@ -84,24 +107,24 @@ def as_dict(identified: Identified) -> dict[str, Any]:
         "rls.symmetric": identified.symmetric,
         "rls.n": identified.n,
         "rls.m": identified.m,
-        "tau noise variance [(N.m)2]": identified.tau_variance,
-        "theta noise variance [rad2]": identified.theta_variance,
-        "filter bandwidth [rad/s]": identified.bandwidth,
+        "tau_noise_variance": identified.tau_variance,
+        "theta_noise_variance": identified.theta_variance,
+        "filter_bandwidth": identified.bandwidth,
         "filter.V_a": identified.V_a,
-        "deformation is noise above [Hz]": identified.coherent,
-        "zero of the deformation [rad]": identified.zero,
-        "knees [rad]": list(identified.knees),
-        "largest phi [rad]": identified.phi,
-        "largest distance of setPoint from its center [1]": identified.set_point,
-        "center of setPoint [1]": identified.set_point_center,
-        "largest gamma tau [N.m]": identified.torque,
-        "notes": list(identified.notes),
+        "deformation_is_noise_above": identified.coherent,
+        "zero_of_deformation": identified.zero,
+        "knees": list(identified.knees),
+        "largest_phi": identified.phi,
+        "largest_setPoint_distance": identified.set_point,
+        "setPoint_center": identified.set_point_center,
+        "largest_gamma_tau": identified.torque,
+        "notes": [note.as_dict() for note in identified.notes],
     }
 
 
 def summary(identified: Identified) -> str:
     """Formats the result of an identification as text that fits on one screen."""
-    lines = [f"  {note}" for note in identified.notes]
+    lines = [f"  {note.in_words}" for note in identified.notes]
     lines.append("")
     lines += [f"{name:16}{_text(each)}" for name, each in identified.quantities.items()]
     if not all(each.determined for each in identified.quantities.values()):

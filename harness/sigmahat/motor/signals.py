@@ -8,8 +8,9 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from sigmahat.fmi.model import Value
+from sigmahat.recording.gaps import stretches
 from sigmahat.recording.log import Array
-from sigmahat.recording.resampling import Samples, stretches
+from sigmahat.recording.sampling import Samples
 
 BLOCK = 0.25  # duration of a block; errors in different blocks count as independent [s]
 EDGE = 0.1  # duration left out at both ends of a stretch, where the filter has not settled [s]

@@ -10,7 +10,7 @@ from sigmahat.estimator.estimator import Estimator
 from sigmahat.recording.configuration import PORTS, Configuration
 from sigmahat.recording.estimator_parameters import parameters
 from sigmahat.recording.log import LogError
-from sigmahat.recording.resampling import Samples
+from sigmahat.recording.sampling import Samples
 
 OUTPUTS = (
     *("sigma", "tau_e", "tau_e_residual", "theta_dot", "phi", "setPoint", "a", "rho", "epsilon"),

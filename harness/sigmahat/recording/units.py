@@ -2,15 +2,16 @@
 
 import math
 import re
+from dataclasses import dataclass
 from difflib import get_close_matches
-
-import numpy as np
+from typing import TypeVar
 
 from sigmahat.recording.configuration import PORTS, Port
 from sigmahat.recording.log import Array, LogError
 
 TURN = {"rad": 2 * math.pi, "mrad": 2000 * math.pi, "deg": 360.0, "turn": 1.0}
 """Size of one turn in each unit of angle."""
+_Values = TypeVar("_Values", float, Array)
 _USUAL = ("rad", "mrad", "deg", "turn", "counts", "N.m", "mN.m", "kN.m", "lbf.in", "A", "mA", "mm")
 _USUAL_TIMES = ("s", "ms", "us", "ns", "min", "h")
 _LONGEST = 40  # characters of a unit
@@ -64,26 +65,25 @@ def scale(name: str, port: Port) -> float:
     return port.sign * factor(name, port) / port.gear_ratio
 
 
-def convert(name: str, port: Port, values: Array) -> Array:
-    """Converts the values of an unwrapped column to the unit of the port."""
-    times = scale(name, port)
-    if (times, port.zero) == (1.0, 0.0):
-        return values
-    converted: Array = values - port.zero
-    converted *= times
-    return converted
+@dataclass(frozen=True)
+class Conversion:
+    """Converts unwrapped values of a column to the unit of its port: (value - zero) scale."""
 
+    zero: float  # in the unit of the column
+    scale: float
 
-def unwrap(values: Array, period: float) -> tuple[Array, int]:
-    """Unwraps a column of a counter that starts again after a period, and counts the jumps.
+    @staticmethod
+    def of(name: str, port: Port) -> "Conversion":
+        """Raises LogError for a unit that does not fit the port."""
+        return Conversion(port.zero, scale(name, port))
 
-    A step of more than half a period between finite values is a jump.
-    """
-    finite = np.isfinite(values)
-    jumps = -np.round(np.diff(values[finite]) / period)
-    unwrapped = values.copy()
-    unwrapped[finite] += period * np.concatenate([[0.0], np.cumsum(jumps)])
-    return unwrapped, int(np.count_nonzero(jumps))
+    def apply(self, values: _Values) -> _Values:
+        """Converts numbers or arrays; values that need no conversion are not copied."""
+        if (self.zero, self.scale) == (0.0, 1.0):
+            return values
+        converted: _Values = values - self.zero
+        converted *= self.scale
+        return converted
 
 
 def _needed(where: str, port: Port, key: str, unit: str) -> float:

@@ -4,9 +4,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from pydantic import ValidationError
 
+from sigmahat.checks.findings import findings_of
+from sigmahat.checks.text import sentence
 from sigmahat.files.tables import read_csv
 from sigmahat.report.contents import Contents, TextTable, number, of_file
 from sigmahat.report.residuals import residual_panels, residuals
@@ -21,7 +25,7 @@ from sigmahat.result.curve import (
 )
 from sigmahat.result.curve_of_log import POINTS, MeasuredPoints, read_points
 from sigmahat.result.data_sheet import WORDS
-from sigmahat.result.estimate import JOINTS
+from sigmahat.result.estimate import JOINTS, continued_in_words
 from sigmahat.result.estimate_table import REPLAYED, EstimateTable, Replayed
 from sigmahat.result.log_panels import (
     curve_panels,
@@ -31,6 +35,7 @@ from sigmahat.result.log_panels import (
     stiffness_panels,
 )
 from sigmahat.result.sheet import FORMAT, Sheet
+from sigmahat.result.stored import wrong_values
 from sigmahat.show.style import plain_text, plain_title, plain_unit
 
 _OF_THE_METHOD = ("a", "rho")  # inner outputs of the method, which are not in the table
@@ -53,7 +58,7 @@ def from_log(folder: Path) -> Contents:
     tables = [
         *([curve_table(curve)] if curve.branches else []),
         found_table(sheet),
-        *([] if log.findings is None else [findings_table(log.findings)]),
+        *([] if log.findings is None else [_findings_table(folder, log.findings)]),
         _estimates(signals),
         _doubts(log.doubt),
         estimator_table(sheet),
@@ -75,8 +80,13 @@ def from_log(folder: Path) -> Contents:
         ],
         headline=headline(curve, sheet.doubt),
         answer=list(curve_panels(curve, points)),
-        notes=[*log.notes, *sampling(reduced)],
-        marks=log.changes,
+        notes=[
+            *continued_in_words([each.file for each in sheet.logs[:-1]]),
+            *(note.in_words for note in log.notes),
+            *(change.in_words for change in log.changes),
+            *sampling(reduced),
+        ],
+        marks=[change.t for change in log.changes],
         whole=reduced.whole,
     )
 
@@ -114,9 +124,14 @@ def _origin(sheet: Sheet, log: Replayed, folder: Path) -> str:
     return f"{source}; sigmahat {sheet.sigmahat}, {made:%Y-%m-%d %H:%M %Z}"
 
 
-def findings_table(findings: Sequence[tuple[str, str]]) -> TextTable:
-    note = "" if findings else "The check found no error in the configuration."
-    return TextTable("Checks", ["", "finding"], list(map(list, findings)), (0, 1), note=note)
+def _findings_table(folder: Path, values: Sequence[Mapping[str, Any]]) -> TextTable:
+    try:
+        findings = findings_of(values)
+    except ValidationError as error:
+        raise wrong_values(REPLAYED.path(folder), error, ["findings"]) from error
+    rows = [[finding.severity.value, sentence(finding)] for finding in findings]
+    note = "" if rows else "The check found no error in the configuration."
+    return TextTable("Checks", ["", "finding"], rows, (0, 1), note=note)
 
 
 def _estimates(signals: EstimateTable) -> TextTable:

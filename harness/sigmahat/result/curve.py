@@ -273,14 +273,17 @@ def stiffness_table(curve: Curve) -> Iterator[tuple[str, ...]]:
 
 
 def stiffness_points(curve: Curve) -> list[dict[str, object]]:
-    """Returns stiffnesses at characteristic deformations as numbers, for JSON."""
+    """Returns stiffnesses at characteristic deformations as numbers, for JSON.
+
+    phi is in rad, sigma and its 95 % interval in N.m/rad; the data reach from and to `reach` [rad].
+    """
     return [
         {
             "setPoint": branch.set_point,
-            "phi [rad]": phi,
-            "sigma [N.m/rad]": _at(branch, phi)[0],
-            "interval [N.m/rad]": _at(branch, phi)[1],
-            "data from and to [rad]": branch.reach,
+            "phi": phi,
+            "sigma": _at(branch, phi)[0],
+            "interval": _at(branch, phi)[1],
+            "reach": branch.reach,
         }
         for branch in curve.branches
         for phi in characteristic(branch.reach)

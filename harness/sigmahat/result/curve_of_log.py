@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from sigmahat.estimator.estimator import Estimator
 from sigmahat.files.tables import numeric_columns, read_csv, title, write_csv
+from sigmahat.recording.gaps import stretches
 from sigmahat.recording.log import Array
-from sigmahat.recording.resampling import stretches
 from sigmahat.result import sheet
 from sigmahat.result.curve import Branch, Curve, characteristic, nearest
 from sigmahat.result.sheet import Polynomial

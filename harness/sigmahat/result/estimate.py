@@ -13,8 +13,10 @@ from sigmahat.files.output import sha256, write_json
 from sigmahat.files.tables import write_csv
 from sigmahat.fmi.model import Value, installed_model
 from sigmahat.fmi.series import Series
+from sigmahat.recording import notes
 from sigmahat.recording.configuration import Configuration
 from sigmahat.recording.log import Log
+from sigmahat.recording.notes import RecordingNote
 from sigmahat.recording.replay import OUTPUTS
 from sigmahat.result import sheet
 from sigmahat.result.curve import (
@@ -27,12 +29,30 @@ from sigmahat.result.curve import (
     write_curve,
 )
 from sigmahat.result.curve_of_log import POINTS, Answer, write_points
-from sigmahat.result.data_sheet import UNITS, WORDS, data_sheet, priors
+from sigmahat.result.data_sheet import MOTOR, UNITS, WORDS, data_sheet, priors
 from sigmahat.result.estimate_table import MCAP, REPLAYED, EstimateWriter, Replayed, mcap_file
 from sigmahat.result.learned import LEARNED, read_learned, write_learned
 from sigmahat.result.replayed_log import Replay, StiffnessChange
 
 _MOTOR = ("D_theta_hat", "B_hat", "tau_coulomb_hat")
+_UNITS = {
+    "samplePeriod": "s",
+    "sigma": "N.m/rad",
+    "sigma_std": "N.m/rad",
+    "sigma_range": "N.m/rad",
+    "tau_e_range": "N.m",
+    "phi": "rad",
+    "phi_range": "rad",
+    "reach": "rad",
+    "epsilon_rms": "N.m",
+    "misfit": "1",
+    "relative": "1",
+    "sigma_per_gain": "1",
+    "tau_coulomb_hat": "N.m",
+    **{f"{name}_hat": unit or "1" for name, unit in {**MOTOR, **UNITS}.items()},
+    **notes.UNITS,
+}
+"""Units of the numbers with these keys in JSON; an interval has the unit of its value."""
 
 
 @dataclass(frozen=True)
@@ -68,7 +88,7 @@ class Estimate:
     """Reason for doubt at the last tick: item of `doubt`; "None" if the estimator was confident."""
     curve: Curve  #: Torque and stiffness against the deformation.
     changes: Sequence[StiffnessChange]  #: Changes that were detected.
-    notes: Sequence[str]  #: Sentences about the processing of the samples of the log.
+    notes: Sequence[RecordingNote]  #: On reading the log and on its samples.
     learned_from: Sequence[str] = ()  #: Earlier logs that the estimator has processed.
     series: Series | None = None
     """The outputs at each tick; None if they were written into a folder."""
@@ -79,29 +99,30 @@ class Estimate:
         return headline(self.curve, self.doubt_at_end)
 
     def as_dict(self) -> dict[str, Any]:
-        """Returns the result as a dictionary for JSON; names of the keys contain units."""
+        """Returns the result as a dictionary for JSON, with the units of its numbers by key."""
         return {
             "answer": self.headline,
+            "units": _UNITS,
             "log": str(self.log),
             "ticks": self.ticks,
             "skipped": self.skipped,
-            "samplePeriod [s]": self.T,
-            "sigma [N.m/rad]": self.sigma,
-            "sigma_std [N.m/rad]": self.sigma_std,
+            "samplePeriod": self.T,
+            "sigma": self.sigma,
+            "sigma_std": self.sigma_std,
             "confident": self.confident,
             "doubt": self.doubt,
             "misfit": self.misfit,
-            "sigma range [N.m/rad]": self.sigma_range,
-            "tau_e range [N.m]": self.tau_e_range,
-            "phi range [rad]": self.phi_range,
-            "epsilon rms [N.m]": self.epsilon_rms,
+            "sigma_range": self.sigma_range,
+            "tau_e_range": self.tau_e_range,
+            "phi_range": self.phi_range,
+            "epsilon_rms": self.epsilon_rms,
             "eta": self.eta,
             "curve": stiffness_points(self.curve),
             "motor": self.motor,
             "joint": self.joint,
             "sigma_per_gain": self.sigma_per_gain,
-            "changes": [{"t [s]": each.t, "relative": each.relative} for each in self.changes],
-            "notes": self.notes,
+            "changes": [asdict(change) for change in self.changes],
+            "notes": [note.as_dict() for note in self.notes],
             "learned_from": self.learned_from,
             "parameters": self.parameters,
         }
@@ -114,15 +135,15 @@ def estimate(
     progress: Callable[[int], object] = lambda thousandths: None,
     start_from: str | Path | None = None,
     mcap: bool = False,
-    findings: list[tuple[str, str]] | None = None,
+    findings: list[dict[str, Any]] | None = None,
 ) -> Estimate:
     """Replays the log. Without a folder the outputs at all ticks are in the result, as `series`.
 
     If an existing `folder` is given, it gets these files: the table (estimate.csv or .parquet), the
     curve (estimate.curve.csv), its measured points (estimate.points.csv), and the figure
     (estimate.png and .svg). It also gets the data sheet of the joint (joint.json), the state of
-    the estimator (state.json), and notes for the report (estimate.json), with severity and sentence
-    of each finding. With mcap, it also gets estimate.mcap.
+    the estimator (state.json), and notes for the report (estimate.json), with the findings of the
+    checks as data. With mcap, it also gets estimate.mcap.
 
     progress is called from time to time with the thousandths of the log done since the last call.
     With start_from, a folder of results or its state.json, the estimator starts from this state.
@@ -158,9 +179,9 @@ def estimate(
     replayed = Replayed(
         *(REPLAYED.name, REPLAYED.version, str(log.path)),
         *(result.ticks, result.skipped, result.T),
-        changes=[each.t for each in result.changes],
+        changes=result.changes,
         doubt=replay.statistics.doubts,
-        notes=[*result.notes, *(each.in_words for each in result.changes)],
+        notes=result.notes,
         findings=findings,
     )
     write_json(asdict(replayed), folder / REPLAYED.file)
@@ -171,7 +192,6 @@ def estimate(
 def _result(replay: Replay, found: Curve) -> Estimate:
     samples, statistics, every = replay.samples, replay.statistics, replay.parameters
     last, doubts, before = statistics.last, statistics.doubts, [e.file for e in replay.logs[:-1]]
-    continued = [f"continued from what was learned from {', '.join(before)}"] if before else []
     return Estimate(
         log=replay.log.path,
         ticks=len(samples.values),
@@ -194,7 +214,7 @@ def _result(replay: Replay, found: Curve) -> Estimate:
         doubt_at_end=statistics.last_doubt,
         curve=found,
         changes=replay.changes.found,
-        notes=[*continued, *samples.notes],
+        notes=samples.notes,
         learned_from=before,
     )
 
@@ -209,13 +229,19 @@ def _save_figure(replay: Replay, answered: Answer, folder: Path) -> None:
 _NEGLIGIBLE = 0.1  # fraction of the standard deviation of a prior: smaller estimates are not shown
 
 
+def continued_in_words(files: Sequence[str]) -> list[str]:
+    """Sentence on the earlier logs from which an estimate continued; none without such logs."""
+    return [f"continued from what was learned from {', '.join(files)}"] if files else []
+
+
 def summary(result: Estimate) -> str:
     """Formats the result as text that fits on one screen."""
     p = result.parameters
     std = "for which the method gives no standard deviation"
     if p["method"] == "FilteredRegression":
         std = f"standard deviation {result.sigma_std:.2g} N.m/rad"
-    lines = [f"{result.log}", *(f"  {note}" for note in result.notes), ""]
+    said = [*continued_in_words(result.learned_from), *(note.in_words for note in result.notes)]
+    lines = [f"{result.log}", *(f"  {sentence}" for sentence in said), ""]
     lines += [
         f"method {p['method']}, modality {p['modality']}, T = {result.T:g} s, "
         f"rls.n = {p['rls.n']}, rls.m = {p['rls.m']}, "

@@ -11,7 +11,7 @@ columns of the log are unchanged. Times are float64, because times of hours need
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
@@ -30,8 +30,10 @@ from sigmahat.files.output import finite
 from sigmahat.fmi.model import Model
 from sigmahat.fmi.series import schema
 from sigmahat.recording.log import Log, LogError
+from sigmahat.recording.notes import RecordingNote
 from sigmahat.recording.readers.csv_parquet import CsvLog, ParquetLog
-from sigmahat.recording.resampling import Samples
+from sigmahat.recording.sampling import Samples
+from sigmahat.result.replayed_log import StiffnessChange
 from sigmahat.result.stored import NO_OTHER_KEYS, Format, Text
 
 _ROWS = 1 << 15
@@ -223,12 +225,12 @@ class Replayed:
     ticks: int  # number of ticks of the estimator in the log
     skipped: int  # ticks without an estimate: a measurement was missing
     T: float  # time between ticks [s]
-    changes: list[float]  # times at which the stiffness changed [s]
+    changes: Sequence[StiffnessChange]  # changes of the stiffness
     doubt: dict[Text, float]
     """Fraction of the ticks in the second half, by item of the output `doubt`."""
-    notes: list[Text]  # sentences about the processing of the samples of the log
-    findings: list[tuple[Text, Text]] | None = None
-    """Severity and sentence of each finding of the checks; None without checks."""
+    notes: Sequence[RecordingNote]  # on reading the log and on its samples
+    findings: list[dict[str, Any]] | None = None
+    """Findings of the checks as data, checks/findings.py; None without checks."""
 
 
-REPLAYED = Format("estimate.json", "sigmahat estimate", 2, Replayed)  # format of the file
+REPLAYED = Format("estimate.json", "sigmahat estimate", 3, Replayed)  # format of the file

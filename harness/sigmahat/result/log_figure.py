@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from sigmahat.recording.resampling import refused, stretches
+from sigmahat.recording.gaps import refused, stretches
 from sigmahat.result.curve_of_log import Answer, extremes
 from sigmahat.result.log_panels import Reduced, curve_panels, quantity_panels, stiffness_panels
 from sigmahat.result.replayed_log import DRAWN, Replay

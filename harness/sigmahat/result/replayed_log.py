@@ -15,7 +15,7 @@ from sigmahat.recording.configuration import Configuration
 from sigmahat.recording.estimator_parameters import all_parameters
 from sigmahat.recording.log import Array, Log
 from sigmahat.recording.replay import OUTPUTS, RECORDED, estimator_for, play
-from sigmahat.recording.resampling import sample
+from sigmahat.recording.sampling import sample
 from sigmahat.result.curve_of_log import (
     NEEDED,
     Answer,

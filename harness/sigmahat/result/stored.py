@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Generic, TypeVar
@@ -51,6 +52,16 @@ _Contents = TypeVar("_Contents")
 _AGAIN = "run `sigmahat estimate` again"
 
 
+def wrong_values(path: Path, error: ValidationError, place: Sequence[str] = ()) -> ValueError:
+    """Creates the error for a file with values that are missing or of a wrong type.
+
+    place  keys above the values that were validated
+    """
+    first = error.errors()[0]
+    where = ".".join(map(str, (*place, *first["loc"])))
+    return ValueError(f"{path}: damaged: {where}: {first['msg']}; {_AGAIN}")
+
+
 @dataclass(frozen=True)
 class Format(Generic[_Contents]):
     """A kind of file that `sigmahat estimate` writes into its folder."""
@@ -86,9 +97,7 @@ class Format(Generic[_Contents]):
         try:
             return TypeAdapter(self.contents).validate_python(document)
         except ValidationError as error:
-            first = error.errors()[0]
-            where = ".".join(map(str, first["loc"]))
-            raise ValueError(f"{path}: damaged: {where}: {first['msg']}; {_AGAIN}") from error
+            raise wrong_values(path, error) from error
 
     def _unexpected(self, path: Path, got: str) -> ValueError:
         expected = f"expected the {self.file} that `sigmahat estimate` wrote"

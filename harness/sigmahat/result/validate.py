@@ -14,11 +14,15 @@ from sigmahat.estimator.estimator import Estimator
 from sigmahat.files.output import sha256
 from sigmahat.fmi.model import Value
 from sigmahat.motor.noise import low_pass
+from sigmahat.recording import notes
 from sigmahat.recording.configuration import Configuration
+from sigmahat.recording.counters import JointCounter
 from sigmahat.recording.estimator_parameters import all_parameters
+from sigmahat.recording.gaps import stretches
 from sigmahat.recording.log import Array, Log, LogError
+from sigmahat.recording.notes import RecordingNote
 from sigmahat.recording.replay import play
-from sigmahat.recording.resampling import Samples, stretches, turns_from
+from sigmahat.recording.sampling import Samples
 from sigmahat.result import sheet
 from sigmahat.result.curve import NORMAL_95
 from sigmahat.result.curve_of_log import union
@@ -33,6 +37,20 @@ _MOST_ERROR = 0.15
 a robot have up to 0.13 below 2 Hz (docs/robot.md), a log with a wrong zero has 0.19."""
 LOW = 2.0  # frequency of the low pass [Hz]
 _CHUNK = 1 << 16
+_UNITS = {
+    "rms": "N.m",
+    "std": "N.m",
+    "relative": "1",
+    "share": "1",
+    "stiffness_learned": "N.m/rad",
+    "stiffness_of_this_log": "N.m/rad",
+    "this_log_within_learned": "1",
+    "learned_within_this_log": "1",
+    "overlap": "1",
+    "z": "1",
+    **notes.UNITS,
+}
+"""Units of the numbers with these keys in JSON."""
 _SHORTEST = 2.0
 """Shortest stretch that is filtered: beyond both ends, the filter has no data [1/LOW]."""
 
@@ -59,9 +77,13 @@ class TorqueError:
         return TorqueError(rms, std, len(error) / ticks)
 
     def as_dict(self) -> dict[str, float]:
-        """For JSON; units are in the names."""
-        own = {"rms [N.m]": self.rms, "std [N.m]": self.std}
-        return {**own, "relative [1]": self.relative, "share": self.share}
+        """For JSON; the units are in _UNITS."""
+        return {
+            "rms": self.rms,
+            "std": self.std,
+            "relative": self.relative,
+            "share": self.share,
+        }
 
 
 def torque_errors(
@@ -154,6 +176,24 @@ def agreement(
 
 
 @dataclass(frozen=True)
+class TurnedCounter:
+    """The counter of theta or q began in another turn than in earlier logs."""
+
+    port: str  # theta or q
+    periods: int  # away from the earlier logs
+    phi: float  # largest magnitude of the deformation in the earlier logs [rad]
+
+    @property
+    def in_words(self) -> str:
+        return (
+            f"the counter of {self.port} began {self.periods:+d} of its periods away from the logs "
+            "of the learned curve, so that the deformation is wrong: set range.phi to the largest "
+            f"deformation, {self.phi:.2g} rad or a little more, or ports.{self.port}.zero for this "
+            "log"
+        )
+
+
+@dataclass(frozen=True)
 class Validation:
     """Comparison of a log with the estimate from earlier logs."""
 
@@ -168,9 +208,9 @@ class Validation:
     torque_below: TorqueError | None
     """Error of this torque below 2 Hz; None if the log is too short."""
     stiffness: Agreement  #: Stiffness from earlier logs compared with this log.
-    notes: Sequence[str]  #: Sentences about the processing of the samples of the log.
-    turned: str | None
-    """Returns a sentence if a counter began in another turn than in earlier logs, else None."""
+    notes: Sequence[RecordingNote]  #: On reading the log and on its samples.
+    turned: TurnedCounter | None
+    """A counter that began in another turn than in earlier logs."""
 
     @property
     def agree(self) -> bool | None:
@@ -182,7 +222,7 @@ class Validation:
     def fault(self) -> str | None:
         """An error of the estimates, with its likely cause; None without an error."""
         if self.turned is not None:
-            return self.turned
+            return self.turned.in_words
         for which, (value, half) in (
             ("that was learned", self.stiffness.before),
             ("of this log", self.stiffness.alone),
@@ -203,9 +243,10 @@ class Validation:
         return None
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON; units are in the names."""
+        """For JSON, with the units of its numbers by key."""
         both = self.stiffness
         return {
+            "units": _UNITS,
             "log": str(self.log),
             "with": str(self.configuration),
             "start_from": str(self.start_from),
@@ -213,16 +254,16 @@ class Validation:
             "repeated": self.repeated,
             "ticks": self.ticks,
             "torque": self.torque and self.torque.as_dict(),
-            "torque below 2 Hz": self.torque_below and self.torque_below.as_dict(),
-            "stiffness learned [N.m/rad]": both.before,
-            "stiffness of this log [N.m/rad]": both.alone,
-            "this log within learned": both.alone_in_before,
-            "learned within this log": both.before_in_alone,
+            "torque_below_2_Hz": self.torque_below and self.torque_below.as_dict(),
+            "stiffness_learned": both.before,
+            "stiffness_of_this_log": both.alone,
+            "this_log_within_learned": both.alone_in_before,
+            "learned_within_this_log": both.before_in_alone,
             "overlap": both.overlap,
             "z": both.z,
             "agree": self.agree,
             "fault": self.fault,
-            "notes": self.notes,
+            "notes": [note.as_dict() for note in self.notes],
         }
 
 
@@ -285,26 +326,23 @@ def _points(samples: Samples, parameters: Mapping[str, Value]) -> tuple[Array, A
 
 def _turned(
     samples: Samples, configuration: Configuration, logs: Sequence[LearnedLog]
-) -> str | None:
-    """A sentence if the deformation differs from `logs` by whole periods of a counter."""
+) -> TurnedCounter | None:
+    """Returns a counter whose whole periods explain that the deformation differs from `logs`."""
     reach = union([each.phi for each in logs])
-    if reach is None:
+    counter = JointCounter.of(configuration.ports)
+    if reach is None or counter is None:
         return None
     low, high = reach
     center, most = (low + high) / 2, high - low
-    name, turns = turns_from(center, most, samples.values, configuration.ports)
-    if not turns:
+    periods = counter.periods_into(center, most, samples.values)
+    if not periods:
         return None
-    return (
-        f"the counter of {name} began {-turns:+d} of its periods away from the logs of the learned "
-        "curve, so that the deformation is wrong: set range.phi to the largest deformation, "
-        f"{max(abs(low), abs(high)):.2g} rad or a little more, or ports.{name}.zero for this log"
-    )
+    return TurnedCounter(counter.port, -periods, max(abs(low), abs(high)))
 
 
 def summary(result: Validation) -> str:
     both = result.stiffness
-    lines = [f"{result.log}", *(f"  {note}" for note in result.notes), ""]
+    lines = [f"{result.log}", *(f"  {note.in_words}" for note in result.notes), ""]
     lines += [
         f"learned before from {', '.join(result.learned_from)} ({result.start_from})",
         "",

@@ -153,7 +153,6 @@ class Jobs:
     def _identify_and_estimate(self, version: int, text: str) -> None:
         """Writes the results, and gives the setup the configuration with the identified values."""
         from sigmahat.checks.check import check
-        from sigmahat.checks.text import rows
         from sigmahat.files.output import output_folder
         from sigmahat.motor.identify import identify
         from sigmahat.motor.write import update
@@ -167,7 +166,7 @@ class Jobs:
             update(document, found)
         self._later(partial(self._show, version, busy="Estimating ..."))
         configuration = checked_configuration(document, setup.path)
-        findings = rows(check(setup.log, configuration))
+        findings = [each.as_dict() for each in check(setup.log, configuration).findings]
         with output_folder(out) as folder:
             estimate(setup.log, configuration, folder, findings=findings)
         self._later(partial(setup.estimated, text, document, out))

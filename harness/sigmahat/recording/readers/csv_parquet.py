@@ -14,19 +14,16 @@ import pyarrow as pa
 import pyarrow.csv
 import pyarrow.parquet
 
-from sigmahat.recording.log import (
-    MOST_TEXT,
-    Array,
-    Log,
-    LogError,
-    check_columns,
-    check_numbers,
+from sigmahat.recording.arrow_columns import (
     first_text,
     fits_float64,
     holds_text,
     is_number,
     numbers,
 )
+from sigmahat.recording.limits import MOST_TEXT, check_columns, check_numbers
+from sigmahat.recording.log import Array, Log, LogError
+from sigmahat.recording.notes import Encoding, RowOfUnits, ShortRow
 
 _BLOCK = 1 << 20  # bytes of a CSV file that are parsed at a time
 _ALWAYS_READ = 100_000_000  # uncompressed size up to which a file is not checked [bytes]
@@ -143,19 +140,16 @@ class CsvLog(Log):
         )
         super().__init__(path, dict.fromkeys(names, 0))
         if self.dialect.encoding != "utf-8":
-            self.notes.append(f"read as {self.dialect.encoding}: the file is not UTF-8")
+            self.notes.append(Encoding(encoding=self.dialect.encoding))
         if self.dialect.head > 1:
-            self.notes.append("line 2 has the units of the columns")
+            self.notes.append(RowOfUnits(line=2))
         file = TemporaryFile(prefix="sigmahat-")  # noqa: SIM115
         weakref.finalize(self, file.close)  # closing removes the file
         self._copy = self._copied(file)
         self._types = {field.name: field.type for field in self._copy.schema_arrow}
         self.columns = dict.fromkeys(names, self._copy.metadata.num_rows)
         if self._cut:
-            self.notes.append(
-                f"a row with {self._cut[0]} of {len(names)} values was left out: the file may have "
-                "been cut off"
-            )
+            self.notes.append(ShortRow(values=self._cut[0], columns=len(names)))
 
     def _left_out(self, row: pa.csv.InvalidRow) -> str:
         """Skips one row that is too short, such as the last row of an interrupted recording."""

@@ -2,7 +2,8 @@
 
 from pathlib import Path
 
-from sigmahat.recording.log import Log, LogError, check_columns
+from sigmahat.recording.limits import check_columns
+from sigmahat.recording.log import Log, LogError
 from sigmahat.recording.readers.bags import read_bag
 from sigmahat.recording.readers.csv_parquet import CsvLog, ParquetLog
 from sigmahat.recording.readers.matrices import read_hdf5, read_mat

@@ -20,7 +20,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sigmahat.recording.log import LogError, LogInMemory, check_bytes, check_columns, check_numbers
+from sigmahat.recording.limits import check_bytes, check_columns, check_numbers
+from sigmahat.recording.log import LogError, LogInMemory
 
 _MATRIX, _COMPRESSED = 14, 15
 _KINDS = {*range(1, 8), 9, 12, 13, _MATRIX, 16, 17, 18}  # numbers, matrices, text

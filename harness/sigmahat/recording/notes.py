@@ -1,0 +1,295 @@
+"""Notes on the processing of a log for the user, as data; the sentence is made where it is shown.
+
+Each kind of note is a class. Its fields have the numbers, and in_words makes the sentence. In
+JSON, a note is an object with these fields, and `kind` says which it is.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import asdict, dataclass
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import ConfigDict, Field
+
+UNITS = {
+    "delay": "s",
+    "duration": "s",
+    "longest": "s",
+    "sample_interval": "s",
+    "sample_period": "s",
+    "t": "s",
+}
+"""Units of the fields of notes."""
+
+
+@dataclass(frozen=True)
+class Note(ABC):
+    """Something that the user should know about a log."""
+
+    __pydantic_config__: ClassVar[ConfigDict] = ConfigDict(extra="forbid")
+
+    @property
+    @abstractmethod
+    def in_words(self) -> str:
+        """The sentence for the user."""
+
+    def as_dict(self) -> dict[str, Any]:
+        """Returns kind and numbers of the note for JSON."""
+        return asdict(self)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Encoding(Note):
+    """The text of the file is not UTF-8."""
+
+    kind: Literal["encoding"] = "encoding"
+    encoding: str
+
+    @property
+    def in_words(self) -> str:
+        return f"read as {self.encoding}: the file is not UTF-8"
+
+
+@dataclass(frozen=True, kw_only=True)
+class RowOfUnits(Note):
+    """A line below the names of the columns has their units."""
+
+    kind: Literal["row_of_units"] = "row_of_units"
+    line: int
+
+    @property
+    def in_words(self) -> str:
+        return f"line {self.line} has the units of the columns"
+
+
+@dataclass(frozen=True, kw_only=True)
+class ShortRow(Note):
+    """A row with too few values was left out."""
+
+    kind: Literal["short_row"] = "short_row"
+    values: int
+    columns: int
+
+    @property
+    def in_words(self) -> str:
+        return (
+            f"a row with {self.values} of {self.columns} values was left out: the file may have "
+            "been cut off"
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Rows(Note):
+    """How many rows became how many ticks."""
+
+    kind: Literal["rows"] = "rows"
+    rows: int
+    duration: float  # from the first row to the last [s]
+    ticks: int
+    sample_period: float  # time between two ticks [s]
+
+    @property
+    def in_words(self) -> str:
+        return (
+            f"{self.rows} rows over {self.duration:.6g} s; "
+            f"{self.ticks} ticks of {self.sample_period:g} s"
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class NoTimeColumn(Note):
+    """The times of the rows were not recorded."""
+
+    kind: Literal["no_time_column"] = "no_time_column"
+    sample_period: float  # assumed time between two rows [s]
+
+    @property
+    def in_words(self) -> str:
+        return f"no time column: rows taken as {self.sample_period:g} s apart"
+
+
+@dataclass(frozen=True, kw_only=True)
+class RepeatedTimes(Note):
+    """Rows with the time of the row before were left out."""
+
+    kind: Literal["repeated_times"] = "repeated_times"
+    column: str  # with the times
+    rows: int
+
+    @property
+    def in_words(self) -> str:
+        return f"{self.column}: {self.rows} rows with the time of the row before left out"
+
+
+@dataclass(frozen=True, kw_only=True)
+class MissingTimes(Note):
+    """Rows without a time were left out."""
+
+    kind: Literal["missing_times"] = "missing_times"
+    column: str  # with the times
+    rows: int
+
+    @property
+    def in_words(self) -> str:
+        return f"{self.column}: {self.rows} rows without a time left out"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Unwrapped(Note):
+    """The counter of a port started again."""
+
+    kind: Literal["unwrapped"] = "unwrapped"
+    port: str
+    jumps: int  # number of times that it started again
+    period: float  # in the unit of the column
+    unit: str  # of the column, "" if it is the unit of the port
+
+    @property
+    def in_words(self) -> str:
+        return f"{self.port}: unwrapped {self.jumps} times at {self.period:g} {self.unit}".rstrip()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Delayed(Note):
+    """The samples of a port were moved back by its delay."""
+
+    kind: Literal["delayed"] = "delayed"
+    port: str
+    delay: float  # [s]
+
+    @property
+    def in_words(self) -> str:
+        return f"{self.port}: moved back by {self.delay:g} s"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Interpolated(Note):
+    """Ticks of a port have values between two samples."""
+
+    kind: Literal["interpolated"] = "interpolated"
+    port: str
+    ticks: int
+    sample_interval: float | None
+    """Usual time between two samples [s]; None if nearly every tick has a sample."""
+
+    @property
+    def in_words(self) -> str:
+        apart = ""
+        if self.sample_interval is not None:
+            apart = f", its samples are {self.sample_interval:.3g} s apart"
+        return f"{self.port}: {self.ticks} ticks interpolated{apart}"
+
+
+@dataclass(frozen=True, kw_only=True)
+class FasterThanTicks(Note):
+    """A port has more samples than ticks."""
+
+    kind: Literal["faster_than_ticks"] = "faster_than_ticks"
+    port: str
+    sample_interval: float  # usual time between two samples [s]
+
+    @property
+    def in_words(self) -> str:
+        return f"{self.port}: faster than the ticks, samples between them left out, no filter"
+
+
+@dataclass(frozen=True, kw_only=True)
+class BetweenTicks(Note):
+    """A port with a sample for nearly every tick has some samples between two ticks."""
+
+    kind: Literal["between_ticks"] = "between_ticks"
+    port: str
+    samples: int
+
+    @property
+    def in_words(self) -> str:
+        return f"{self.port}: {self.samples} samples between ticks"
+
+
+@dataclass(frozen=True, kw_only=True)
+class MissingSamples(Note):
+    """Samples of a port are no numbers."""
+
+    kind: Literal["missing_samples"] = "missing_samples"
+    port: str
+    samples: int
+
+    @property
+    def in_words(self) -> str:
+        return f"{self.port}: {self.samples} samples missing or not finite"
+
+
+@dataclass(frozen=True, kw_only=True)
+class CounterInGap(Note):
+    """A counter missed whole periods in gaps, which the other position shows."""
+
+    kind: Literal["counter_in_gap"] = "counter_in_gap"
+    port: str
+    periods: int  # in the first of these gaps
+    t: float  # begin of the first gap, since the start of the log [s]
+    gaps: int  # number of such gaps
+
+    @property
+    def in_words(self) -> str:
+        also = f" and during {self.gaps - 1} more" if self.gaps > 1 else ""
+        return (
+            f"{self.port}: {self.periods:+d} periods of its counter during the gap after "
+            f"{self.t:.6g} s{also}, by the motion of the other encoder"
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class CounterAtStart(Note):
+    """A counter was switched on in another turn."""
+
+    kind: Literal["counter_at_start"] = "counter_at_start"
+    port: str
+    periods: int
+
+    @property
+    def in_words(self) -> str:
+        return (
+            f"{self.port}: {self.periods:+d} periods of its counter, "
+            "so that the deformation is in range.phi"
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class SkippedTicks(Note):
+    """The estimator skips ticks at which a value is missing or refused."""
+
+    kind: Literal["skipped_ticks"] = "skipped_ticks"
+    ticks: int
+    gaps: int  # number of gaps that these ticks form
+    longest: float  # duration of the longest gap [s]
+    t: float  # begin of the longest gap, since the start of the log [s]
+
+    @property
+    def in_words(self) -> str:
+        return (
+            f"{self.ticks} ticks skipped in {self.gaps} gaps, the longest of {self.longest:.3g} s "
+            f"at {self.t:.6g} s after the start; the estimator keeps its estimate over them"
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class FirstPart(Note):
+    """Only the first part of a long log was used."""
+
+    kind: Literal["first_part"] = "first_part"
+    duration: float  # of this part [s]
+
+    @property
+    def in_words(self) -> str:
+        return f"used the first {self.duration:g} s"
+
+
+RecordingNote = Annotated[
+    Encoding | RowOfUnits | ShortRow
+    | Rows | NoTimeColumn | RepeatedTimes | MissingTimes
+    | Unwrapped | Delayed | Interpolated | FasterThanTicks | BetweenTicks | MissingSamples
+    | CounterInGap | CounterAtStart | SkippedTicks | FirstPart,
+    Field(discriminator="kind"),
+]  # fmt: skip
+"""Any note on reading a log and on its samples at the ticks."""
