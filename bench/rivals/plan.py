@@ -14,7 +14,7 @@ from rivals.records import JointLog
 from rivals.simulation import make
 from sigmahat.experiments.job import Job, Outcome
 from sigmahat.files.tables import write_csv
-from sigmahat.show.panel import Rows
+from sigmahat.show.panel import FigureRows
 
 SCORES = ("error", "width", "coverage", "interval_score", "confident", "wrong")
 """Numbers of a score in the results [%]."""
@@ -91,7 +91,7 @@ class Rivals:
         write_csv(folder / "rivals.csv", RESULT, rows)
         (folder / "rivals.md").write_text(page(table), encoding="utf-8")
 
-    def figures(self, _table: Sequence[Result]) -> dict[str, Rows]:
+    def figures(self, _table: Sequence[Result]) -> dict[str, FigureRows]:
         return {}
 
     def text(self, table: Sequence[Result]) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import click
 
 from sigmahat.commands.common import printable
-from sigmahat.commands.configuration import check, identify, init, open_page
+from sigmahat.commands.configure import check, identify, init, open_page
 from sigmahat.commands.live import live
 from sigmahat.commands.motion import motion
 from sigmahat.commands.results import estimate, export, report, validate

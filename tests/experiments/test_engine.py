@@ -14,7 +14,7 @@ from sigmahat.experiments.job import Job, Outcome
 from sigmahat.experiments.metrics import mean_interval
 from sigmahat.experiments.records import NAME, Records
 from sigmahat.files.tables import write_csv
-from sigmahat.show.panel import Curve, Kind, Panel, Rows
+from sigmahat.show.panel import FigureRows, Panel, Trace, TraceKind
 
 DONE: list[tuple[float, int]] = []
 """Runs of this process: entry and seed."""
@@ -55,9 +55,9 @@ class Squares:
     def write(self, table: list[tuple[float, float]], folder: Path) -> None:
         write_csv(folder / "squares.csv", ["mean", "half width"], table)
 
-    def figures(self, table: list[tuple[float, float]]) -> dict[str, Rows]:
+    def figures(self, table: list[tuple[float, float]]) -> dict[str, FigureRows]:
         x, (mean, half) = np.array(self.entries), np.array(table).T
-        curve = Curve("squares", "#000000", x, mean, Kind.MEANS, (mean - half, mean + half))
+        curve = Trace("squares", "#000000", x, mean, TraceKind.MEANS, (mean - half, mean + half))
         return {"squares": [[Panel("squares", "x", "y", [curve])]]}
 
     def text(self, table: list[tuple[float, float]]) -> str:

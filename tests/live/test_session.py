@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from command_line import working_in
 from sender import CONFIGURATION, COUNTS, T, estimated, messages, of_joints
-from sigmahat.live.joint import OUTPUTS, Estimated
+from sigmahat.live.live_joint import OUTPUTS, Estimated
 from sigmahat.live.messages import Columns
 from sigmahat.live.session import Session
 from sigmahat.recording.configuration import read_configuration

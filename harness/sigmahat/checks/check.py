@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from sigmahat.checks.contradictions import of_gears, of_positions, of_swap, of_torque
 from sigmahat.checks.findings import Checked, Finding, Kind, Severity
-from sigmahat.checks.motion import of_gears, of_positions, of_swap, of_torque
 from sigmahat.checks.samples import at_rest, of_columns
 from sigmahat.checks.text import DOUBTS
 from sigmahat.fmi.model import Value, installed_model

@@ -4,8 +4,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from sigmahat.checks.contradictions import finding
 from sigmahat.checks.findings import Finding, Kind, Severity
-from sigmahat.checks.motion import finding
 from sigmahat.motor.hypotheses.encoder import known_step, other_step
 from sigmahat.motor.hypotheses.positions import still
 from sigmahat.motor.log_view import LogView

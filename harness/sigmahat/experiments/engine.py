@@ -18,7 +18,7 @@ from sigmahat.experiments.job import Job, Outcome
 from sigmahat.experiments.pool import Progress, WorkerError, WorkersLostError, spread
 from sigmahat.experiments.records import NAME, Records
 from sigmahat.files.output import created_folder, output_folder
-from sigmahat.show.panel import Rows
+from sigmahat.show.panel import FigureRows
 
 Table = TypeVar("Table")
 
@@ -40,7 +40,7 @@ class Plan(Protocol[Table]):
     def write(self, table: Table, folder: Path) -> None:
         """Writes the files of the table."""
 
-    def figures(self, table: Table) -> Mapping[str, Rows]:
+    def figures(self, table: Table) -> Mapping[str, FigureRows]:
         """The figures of the table, by the names of their files without a suffix."""
 
     def text(self, table: Table) -> str:

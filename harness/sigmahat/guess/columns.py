@@ -174,7 +174,7 @@ def lost_rows(times: Array, T: float) -> float | None:
 
 
 @dataclass(frozen=True)
-class Clock:
+class TimeColumn:
     unit: str = "s"
     interval: float = 1e-3  # usual time between rows [s]
     longest_gap: float | None = None  # as `lost_rows`
@@ -183,7 +183,9 @@ class Clock:
 @dataclass(frozen=True)
 class Columns:
     signals: Sequence[Column]
-    clocks: Mapping[str | None, Clock]  # clocks by column of times; the last, None, for no times
+    clocks: Mapping[
+        str | None, TimeColumn
+    ]  # clocks by column of times; the last, None, for no times
     facts: Mapping[str, Facts]  # facts of all columns, by name
     window_T: float  # time between the samples of the windows [s]
 
@@ -212,11 +214,11 @@ def read_columns(log: Log) -> Columns:
     named = {name: unit for name, unit in units.items() if meanings[name].quantity == "time"}
     units = named or units
     times = {name: values[name] * seconds(unit) for name, unit in units.items()}
-    clocks: dict[str | None, Clock] = {}
+    clocks: dict[str | None, TimeColumn] = {}
     for name, t in times.items():
         T = interval(t)
-        clocks[name] = Clock(units[name], T, lost_rows(t, T))
-    clocks[None] = Clock()
+        clocks[name] = TimeColumn(units[name], T, lost_rows(t, T))
+    clocks[None] = TimeColumn()
     clock_of = {}  # from the same group or topic, else any clock of equal length
     for name, samples in log.columns.items():
         same = [each for each in units if log.columns[each] == samples]

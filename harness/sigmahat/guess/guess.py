@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from sigmahat.fmi.unknown_name import unknown
-from sigmahat.guess.columns import Clock, Column, Columns
+from sigmahat.guess.columns import Column, Columns, TimeColumn
 from sigmahat.guess.ports import PortGuess, guess_ports
 from sigmahat.guess.roles import Roles, assign, chosen_roles
 from sigmahat.recording.log import Log, LogError
@@ -61,7 +61,7 @@ def _all_words(columns: Sequence[Column]) -> Mapping[str, Sequence[str]]:
 class JointGuess:
     name: str  # name of the joint in the columns; empty if no column names a joint
     time: str | None  # the time column of ports without their own; None: the log has no times
-    clock: Clock
+    clock: TimeColumn
     ports: Mapping[str, PortGuess]  # guesses of the ports that have a column, in the order of PORTS
 
 

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, BinaryIO
 
 import numpy as np
 
-from sigmahat.live.joint import Estimated
+from sigmahat.live.live_joint import Estimated
 from sigmahat.live.loop import Inbox, Sink, Source
 from sigmahat.live.messages import LONGEST, Columns, Decoder
 from sigmahat.live.session import Session

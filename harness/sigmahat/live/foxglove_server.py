@@ -10,7 +10,7 @@ import foxglove
 
 from sigmahat.fmi.model import installed_model
 from sigmahat.fmi.series import schema
-from sigmahat.live.joint import BANDED, GIVEN, Estimated, LiveJoint
+from sigmahat.live.live_joint import BANDED, GIVEN, Estimated, LiveJoint
 from sigmahat.live.loop import Sink
 
 

@@ -12,7 +12,7 @@ import click
 
 from sigmahat.files.tables import aligned
 from sigmahat.fmi.interrupts import handling
-from sigmahat.live.joint import Estimated
+from sigmahat.live.live_joint import Estimated
 from sigmahat.live.messages import Columns
 from sigmahat.live.session import Session
 from sigmahat.result.curve import NORMAL_95

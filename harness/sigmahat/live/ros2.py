@@ -24,7 +24,7 @@ from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 
-from sigmahat.live.joint import Estimated
+from sigmahat.live.live_joint import Estimated
 from sigmahat.live.loop import Inbox, Sink, Source
 from sigmahat.live.messages import Columns, number
 

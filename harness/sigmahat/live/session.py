@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from sigmahat.files.output import sha256, write_whole
 from sigmahat.live.clock import Clock
-from sigmahat.live.joint import Estimated, LiveJoint
+from sigmahat.live.live_joint import Estimated, LiveJoint
 from sigmahat.live.messages import Columns
 from sigmahat.recording import several_joints as of_file
 from sigmahat.recording.configuration import joints_of, read_configuration, read_document

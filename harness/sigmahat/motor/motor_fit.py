@@ -15,7 +15,7 @@ from sigmahat.motor.friction import frictions, slower, with_all_columns
 from sigmahat.motor.log_view import LogView
 from sigmahat.motor.quantities import WIDE, Quantity
 from sigmahat.motor.signals import Signals, set_point_moves
-from sigmahat.motor.spring import Spring, is_narrow
+from sigmahat.motor.spring import SpringFit, is_narrow
 from sigmahat.recording.configuration import Configuration
 
 _UNITS = {"B": "kg.m2", "D_theta": "N.m.s/rad", "tau_coulomb": "N.m"}
@@ -110,7 +110,7 @@ def fit_motor(
     if with_inertia is not None and not quantities["B"].determined:
         fits = with_inertia
         quantities |= {name: _motor_quantity(name, fits, torque) for name in MOTOR[1:]}
-    spring = Spring(form, fits.first, pieces)
+    spring = SpringFit(form, fits.first, pieces)
     if "gain" not in fits.first.value:
         quantities["zero"] = _zero(spring, fits.others, gamma)
     gain = fits.first.value.get("gain", math.nan), _half_width("gain", fits)
@@ -225,7 +225,7 @@ def _quantity(value: float, half_width: float, unit: str, negligible: float) -> 
     return Quantity(value, half_width, unit, bool(determined))
 
 
-def _zero(spring: Spring, fits: Sequence[Fit], gamma: float) -> Quantity:
+def _zero(spring: SpringFit, fits: Sequence[Fit], gamma: float) -> Quantity:
     """Computes the deformation at which spring and constant torque cancel.
 
     The zero is determined if its interval is short compared with the range of the deformation, and

@@ -16,7 +16,7 @@ from sigmahat.motor.equation import MOTOR, Equations, Fit, Form, extra, fit
 from sigmahat.motor.log_view import LogView
 from sigmahat.motor.noise import is_only_noise
 from sigmahat.motor.signals import set_point_moves
-from sigmahat.motor.spring import Spring
+from sigmahat.motor.spring import SpringFit
 
 LINEAR = "eta[0,0]"  # name of the regressor of the linear spring in a symmetric polynomial
 _SLOWEST = 0.1  # largest sample period that still shows the motion of a joint [s]
@@ -35,7 +35,7 @@ class QuickFit:
     form: Form  # orders and filters
     fit: Fit  # fit with a polynomial of these orders
     linear: Fit  # fit with a linear spring
-    spring: Spring  # the polynomial
+    spring: SpringFit  # the polynomial
 
     @property
     def scores(self) -> dict[str, float]:
@@ -89,7 +89,7 @@ def quick_fit(view: LogView, f_0: float | None = None) -> QuickFit | None:
     choice = _chosen(view, form if is_symmetric else form.with_all_powers())
     line = _equations(view, replace(choice.form, n=1, m=1, symmetric=True))
     polynomial = fit(choice.equations)
-    spring = Spring(choice.form, polynomial, view.pieces)
+    spring = SpringFit(choice.form, polynomial, view.pieces)
     return QuickFit(view, choice.form, polynomial, fit(line), spring)
 
 

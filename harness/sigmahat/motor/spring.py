@@ -45,7 +45,7 @@ def is_off(zero: float, half_width: float, covered: float) -> bool:
 
 
 @dataclass(frozen=True)
-class Spring:
+class SpringFit:
     """Motor torque that balances the spring: the polynomial in a fit to stretches of a log."""
 
     form: Form

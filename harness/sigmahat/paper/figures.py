@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from sigmahat.experiments.scenario import NOMINAL, PLANT, signal_of, source_and_variable
 from sigmahat.fmi.master import Recording
-from sigmahat.show.panel import TRUE, Curve, Kind, Panel, Rows
+from sigmahat.show.panel import TRUE, FigureRows, Panel, Trace, TraceKind
 from sigmahat.show.style import BLACK, BLUE, GREEN, SKY, VERMILION, plain_axis
 
 Array = NDArray[np.float64]
@@ -42,10 +42,10 @@ class _Line:
         source, _ = source_and_variable(self.signal)
         return source in (PLANT, NOMINAL, *recording.estimators)
 
-    def curve(self, recording: Recording, part: slice) -> Curve:
+    def curve(self, recording: Recording, part: slice) -> Trace:
         signal = self.signal
         values = signal_of(recording, signal) if isinstance(signal, str) else signal(recording)
-        return Curve(
+        return Trace(
             self.label,
             self.color,
             recording.t[part],
@@ -151,13 +151,13 @@ def _over_deformation(
     last = recording.t >= (1 - _LAST) * recording.t[-1]
     phi, true = recording.plant[f"phi{side}"][last], recording.plant[f"{output}{side}"][last]
     order = np.argsort(phi)
-    curves = [Curve("true", TRUE, phi[order], true[order], width=3.0)]
+    curves = [Trace("true", TRUE, phi[order], true[order], width=3.0)]
     for name, color in colors.items():
         if name in recording.estimators:
             estimate = recording.estimators[name]
             x, y = estimate[f"phi{side}"][last], estimate[f"{output}{side}"][last]
             dots = np.argsort(x)[:: max(1, len(x) // _DOTS)]
-            curves.append(Curve(name, color, x[dots], y[dots], Kind.POINTS))
+            curves.append(Trace(name, color, x[dots], y[dots], TraceKind.POINTS))
     caption = f"{about}last {_LAST * recording.t[-1]:g} s"
     return Panel("", plain_axis("phi"), plain_axis(output), curves, linked=False, caption=caption)
 
@@ -267,7 +267,7 @@ def _largest_stiffness(recording: Recording) -> Panel:
     return replace(panel, y_range=(0.95 * float(true.min()), 1.2 * float(true.max())))
 
 
-def _transmission(recording: Recording) -> Rows:
+def _transmission(recording: Recording) -> FigureRows:
     """One flexible transmission: stiffness over time, the curves, and the relative errors."""
     colors = {name: color for name, color, _ in _MODALITIES}
     return [
@@ -278,7 +278,7 @@ def _transmission(recording: Recording) -> Rows:
     ]
 
 
-def _antagonistic(recording: Recording) -> Rows:
+def _antagonistic(recording: Recording) -> FigureRows:
     """Torques of both transmissions, the stiffness of the device and of each side, and errors."""
     torques = [
         _Line("plant.tau_e_1", "side 1", GREEN),
@@ -321,7 +321,7 @@ def _start(recording: Recording) -> slice:
     return _window(recording.t, 0.0, 0.3)
 
 
-FIGURES: dict[str, Callable[[Recording], Rows]] = {
+FIGURES: dict[str, Callable[[Recording], FigureRows]] = {
     "fig3-deformation": lambda run: [[_deformation(run)]],
     "fig4-velocity": lambda run: [
         [_velocity(run)],
@@ -357,4 +357,4 @@ FIGURES: dict[str, Callable[[Recording], Rows]] = {
     ],
     "antagonistic": _antagonistic,
 }
-"""Rows of panels from the recording of a scenario, by the name of the figure."""
+"""FigureRows of panels from the recording of a scenario, by the name of the figure."""

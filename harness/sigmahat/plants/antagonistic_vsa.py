@@ -13,7 +13,7 @@ for initial.theta_i = asinh(gamma tau_i / k_i) / a_i.
 import casadi as ca
 
 from sigmahat.plants.equations import PlantEquations
-from sigmahat.plants.joint import add_link, add_motor, add_torque_sensors, position, velocity
+from sigmahat.plants.parts import add_link, add_motor, add_torque_sensors, position, velocity
 
 SIDES = ("_1", "_2")
 

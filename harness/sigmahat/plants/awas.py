@@ -3,7 +3,7 @@
 import casadi as ca
 
 from sigmahat.plants.equations import PlantEquations, encoder
-from sigmahat.plants.joint import add_link, add_motor, add_torque_sensors, position, velocity
+from sigmahat.plants.parts import add_link, add_motor, add_torque_sensors, position, velocity
 
 plant = PlantEquations("AwasPlant")
 

@@ -1,7 +1,7 @@
 """A joint with a single flexible transmission, (2)-(4): a spring that hardens, with (32), (33)."""
 
 from sigmahat.plants.equations import PlantEquations
-from sigmahat.plants.joint import add_link, add_motor, add_torque_sensors, position, velocity
+from sigmahat.plants.parts import add_link, add_motor, add_torque_sensors, position, velocity
 
 plant = PlantEquations("FlexibleJointPlant")
 

@@ -8,7 +8,7 @@ the AwAS (28) with its lever arm as an input, or a sum of both.
 import casadi as ca
 
 from sigmahat.plants.equations import PlantEquations, encoder
-from sigmahat.plants.joint import (
+from sigmahat.plants.parts import (
     COULOMB_VELOCITY,
     add_link,
     add_torque_sensors,

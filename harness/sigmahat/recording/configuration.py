@@ -124,7 +124,7 @@ def _port_name(name: str) -> str:
 
 
 @dataclass(frozen=True)
-class _File:
+class _ConfigurationFile:
     """The sections of a configuration file."""
 
     __pydantic_config__ = _NO_OTHER_KEYS
@@ -160,7 +160,7 @@ def checked_configuration(
         raise LogError(f"{path}: {what}")
     own = several_joints.of_joint(document, joint)
     try:
-        file = TypeAdapter(_File).validate_python(own.unwrap())
+        file = TypeAdapter(_ConfigurationFile).validate_python(own.unwrap())
     except ValidationError as error:
         # A misspelt key is the reason why another key is missing.
         errors = sorted(error.errors(), key=lambda each: each["type"] != _MISSPELT)
@@ -179,7 +179,7 @@ def checked_configuration(
     return Configuration(path, file.time, file.ports, values, joint)
 
 
-def _refuse_repeated(file: _File, path: Path) -> None:
+def _refuse_repeated(file: _ConfigurationFile, path: Path) -> None:
     """Raises LogError if a column is used for two ports, or for a port and for the time.
 
     Only the port tau_e_sensor may share a column, as for the motor of a compliant test bench.
@@ -225,7 +225,7 @@ def _explain(error: ErrorDetails) -> str:
     what, where = error["type"], ".".join(map(str, error["loc"]))
     section, _, key = where.rpartition(".")
     if what == _MISSPELT:
-        kind = Port if "." in section else Time if section else _File
+        kind = Port if "." in section else Time if section else _ConfigurationFile
         place = f"key in [{section}]" if section else "section"
         return unknown(place, key, [each.name for each in fields(kind)])
     if what == "missing":

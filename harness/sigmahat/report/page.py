@@ -18,7 +18,7 @@ from sigmahat.show.style import PAGE
 from sigmahat.studies.reproduce_results import SEEDS, TABLE, TIME, read_result_files
 from sigmahat.studies.sweep_panels import against_parameters, distributions
 from sigmahat.studies.sweep_summary import summary_columns
-from sigmahat.studies.sweep_table import FAILURE, RUN, Role, read, title
+from sigmahat.studies.sweep_table import FAILURE, RUN, ValueSource, read, title
 
 _MAIN = "RESIDUAL"  # estimator for panels of a single estimator: RESIDUAL needs no torque sensor
 _STIFFNESS = re.compile(r"sigma(_\d)?")
@@ -64,7 +64,7 @@ def from_sweep(folder: Path) -> Contents:
     runs = dict(zip(sweep.values(RUN), sweep.values(FAILURE), strict=True))
     failed = sum(failure is not None for failure in runs.values())
     lines = [f"{len(runs)} runs, {failed} of them failed"]
-    drawn = [title(column) for column in sweep.parameters(Role.DRAWN)]
+    drawn = [title(column) for column in sweep.parameters(ValueSource.DRAWN)]
     if drawn:
         lines.append(f"drawn for each seed: {', '.join(drawn)}")
     columns = summary_columns(sweep)

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sigmahat.result.curve import NORMAL_95
-from sigmahat.show.panel import COLORS, TRUE, Curve, Panel
+from sigmahat.show.panel import COLORS, TRUE, Panel, Trace
 from sigmahat.show.style import QUANTITIES, around, plain_axis
 
 Array = NDArray[np.float64]
@@ -70,8 +70,8 @@ def residual_panels(found: Residuals) -> Iterator[Panel]:
         plain_axis("t"),
         plain_axis("tau_e"),
         [
-            Curve("measured", TRUE, found.t[shown], (predicted + found.residual)[shown], width=2.4),
-            Curve("predicted", COLORS[0], found.t[shown], predicted[shown]),
+            Trace("measured", TRUE, found.t[shown], (predicted + found.residual)[shown], width=2.4),
+            Trace("predicted", COLORS[0], found.t[shown], predicted[shown]),
         ],
         caption=f"fit {found.fit:.1f} % in the second half of the log",
     )
@@ -82,8 +82,8 @@ def residual_panels(found: Residuals) -> Iterator[Panel]:
         "lag [s]",
         "correlation [1]",
         [
-            Curve("residual", COLORS[0], lags, autocorrelation(found.residual, _LAGS)),
-            Curve(
+            Trace("residual", COLORS[0], lags, autocorrelation(found.residual, _LAGS)),
+            Trace(
                 "no correlation", TRUE, lags, np.zeros(_LAGS),
                 band=(np.full(_LAGS, -limit), np.full(_LAGS, limit)),
             ),
@@ -97,8 +97,8 @@ def residual_panels(found: Residuals) -> Iterator[Panel]:
             plain_axis(name),
             f"residual [{torque.unit.replace('.', '·')}]",
             [
-                Curve("mean", COLORS[0], x, mean, band=(mean - half, mean + half)),
-                Curve("0", TRUE, x, np.zeros(len(x))),
+                Trace("mean", COLORS[0], x, mean, band=(mean - half, mean + half)),
+                Trace("0", TRUE, x, np.zeros(len(x))),
             ],
             caption="band: 95 %; where the band does not contain 0, the model fails",
             y_range=around([mean - half, mean + half], 0.1),

@@ -32,7 +32,7 @@ class Learned:
 
 
 @dataclass(frozen=True)
-class _File:
+class _StateFile:
     """The schema of the JSON file `state.json`."""
 
     __pydantic_config__ = NO_OTHER_KEYS
@@ -47,13 +47,13 @@ class _File:
     state: Text
 
 
-LEARNED = Format("state.json", "sigmahat learned state", 2, _File)  # format of the file
+LEARNED = Format("state.json", "sigmahat learned state", 2, _StateFile)  # format of the file
 
 
 def write_learned(estimator: Estimator, logs: Sequence[LearnedLog], path: Path) -> None:
     """Writes the state of an estimator of one joint after the logs."""
     (parameters,) = estimator.parameters
-    contents = _File(
+    contents = _StateFile(
         format=LEARNED.name,
         version=LEARNED.version,
         sigmahat=version(),

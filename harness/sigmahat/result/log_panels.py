@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from sigmahat.result import curve as joint
 from sigmahat.result.curve_of_log import MeasuredPoints, extremes
-from sigmahat.show.panel import COLORS, TRUE, Curve, Panel
+from sigmahat.show.panel import COLORS, TRUE, Panel, Trace
 from sigmahat.show.style import QUANTITIES, around, limits, plain_axis, with_margin
 
 BUDGET = 400_000  # largest number of values of all signals, which take 2 MB of a report
@@ -104,9 +104,9 @@ def stiffness_panels(
             std = reduced.signals.get(f"sigma_std{side}")
             has_interval = std is not None and np.nanmax(std) > 0
             band = joint.interval(values, std) if has_interval else None
-            lines.append(Curve(label, color, reduced.t, values, band=band))
+            lines.append(Trace(label, color, reduced.t, values, band=band))
         true = reduced.signals.get(f"plant.sigma{side}")
-        truth = [] if true is None else [Curve("true", TRUE, reduced.t, true, width=_WIDE)]
+        truth = [] if true is None else [Trace("true", TRUE, reduced.t, true, width=_WIDE)]
         scale = lines[0].y[len(lines[0].y) // 20 :] if true is None else true
         yield Panel(
             f"Stiffness{_of_side(side)}",
@@ -122,7 +122,7 @@ def stiffness_panels(
                 _TIME,
                 "|error| [%]",
                 [
-                    Curve(line.label, line.color, reduced.t, _error(line.y, true), width=1.1)
+                    Trace(line.label, line.color, reduced.t, _error(line.y, true), width=1.1)
                     for line in lines
                 ],
                 y_log=True,
@@ -130,7 +130,7 @@ def stiffness_panels(
             )
 
 
-def _with_band(shown: tuple[float, float], lines: Sequence[Curve]) -> tuple[float, float]:
+def _with_band(shown: tuple[float, float], lines: Sequence[Trace]) -> tuple[float, float]:
     """Extends the limits of an axis so that the 95 % band at the end of the lines is visible."""
     ends = [float(end[-1]) for line in lines for end in line.band or () if np.isfinite(end[-1])]
     return min([shown[0], *ends]), max([shown[1], *ends])
@@ -173,7 +173,7 @@ def _sides(variables: Iterable[str], reduced: Reduced) -> Iterable[str]:
     return dict.fromkeys(side for each, side in of_sides if each.format(side) in reduced.signals)
 
 
-def _curves(labels: Mapping[str, str], side: str, reduced: Reduced) -> list[Curve]:
+def _curves(labels: Mapping[str, str], side: str, reduced: Reduced) -> list[Trace]:
     curves = []
     colors = iter(COLORS)
     for variable, label in labels.items():
@@ -181,10 +181,10 @@ def _curves(labels: Mapping[str, str], side: str, reduced: Reduced) -> list[Curv
         if values is None:
             continue
         if variable.startswith("plant.") and "_measured" not in variable:
-            curves.append(Curve(label, TRUE, reduced.t, values, width=_WIDE))
+            curves.append(Trace(label, TRUE, reduced.t, values, width=_WIDE))
         # A constant signal is not shown: the joint has no sensor or no set-point.
         elif np.nanmin(values) != np.nanmax(values):
-            curves.append(Curve(label, next(colors), reduced.t, values, width=1.1))
+            curves.append(Trace(label, next(colors), reduced.t, values, width=1.1))
     return curves
 
 
@@ -208,7 +208,7 @@ def curve_panels(curve: joint.Curve, points: MeasuredPoints) -> Iterator[Panel]:
         label = f"set-point {branch.set_point:.3g}" if len(settings) > 1 else "estimate"
         color = COLORS[i % len(COLORS)]
         behind = points.phi[own], points.tau_e[own]
-        line = Curve(label, color, branch.phi, branch.sigma, within=branch.within, width=2.0)
+        line = Trace(label, color, branch.phi, branch.sigma, within=branch.within, width=2.0)
         stiffnesses.append(replace(line, band=branch.stiffness_interval()))
         band = branch.torque_interval()
         torques.append(replace(line, y=branch.tau_e, band=band, behind=behind))
@@ -227,7 +227,7 @@ def curve_panels(curve: joint.Curve, points: MeasuredPoints) -> Iterator[Panel]:
         )
 
 
-def _scale(curves: list[Curve]) -> tuple[float, float] | None:
+def _scale(curves: list[Trace]) -> tuple[float, float] | None:
     """Computes the range of the y axis from the data, without single outliers.
 
     A wide band is cut at the size of the curve, because the curve would appear flat otherwise.

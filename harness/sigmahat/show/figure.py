@@ -11,7 +11,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from PIL import Image
 
-from sigmahat.show.panel import Curve, Kind, Panel, Rows
+from sigmahat.show.panel import FigureRows, Panel, Trace, TraceKind
 
 _LETTERS, _HANDLE = 110, 7
 """Letters of a legend in the width of a figure, and letters that a line and its gaps need."""
@@ -22,7 +22,7 @@ def stacked(panels: Sequence[Panel]) -> Figure:
     return in_rows([[panel] for panel in panels])
 
 
-def in_rows(rows: Rows) -> Figure:
+def in_rows(rows: FigureRows) -> Figure:
     """Draws rows of panels from the top down; the panels of a row share its width."""
     figure = Figure(figsize=(7.2, 0.8 + 2.8 * len(rows)), layout="constrained")
     grid = figure.add_gridspec(len(rows), 1)
@@ -51,13 +51,13 @@ def draw(axes: Axes, panel: Panel, columns: int = 3) -> None:
     """
     for curve in panel.curves:
         first = curve is panel.curves[0]
-        if curve.kind is Kind.STEPS:
+        if curve.kind is TraceKind.STEPS:
             axes.stairs(curve.y, curve.x, fill=True, alpha=0.25, color=curve.color)
             axes.stairs(curve.y, curve.x, color=curve.color, linewidth=1.2, label=curve.label)
-        elif curve.kind is Kind.POINTS:
+        elif curve.kind is TraceKind.POINTS:
             style: Any = {"color": curve.color, "markersize": 4, "alpha": 0.6}
             axes.plot(curve.x, curve.y, ".", label=curve.label, **style)
-        elif curve.kind is Kind.MEANS and curve.band is not None:
+        elif curve.kind is TraceKind.MEANS and curve.band is not None:
             ends = np.array([curve.y - curve.band[0], curve.band[1] - curve.y])
             axes.errorbar(
                 curve.x, curve.y, ends, color=curve.color, marker="o", markersize=4, capsize=3,
@@ -79,7 +79,7 @@ def label_x(axes: Axes, panel: Panel) -> None:
     axes.set_xlabel(f"{panel.x_label}\n{panel.caption}" if panel.caption else panel.x_label)
 
 
-def _line(axes: Axes, curve: Curve, first: bool) -> None:
+def _line(axes: Axes, curve: Trace, first: bool) -> None:
     """Draws a line and its band, paler outside of the data, in front of the measured points."""
     color, within = curve.color, curve.within
     if curve.behind is not None:

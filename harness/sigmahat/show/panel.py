@@ -14,7 +14,7 @@ COLORS = ("#1f83c4", "#12a37c", "#e06a1a", "#c9589b", "#b58900", "#56b4e9")
 """Okabe and Ito, shifted to be read on white and on black."""
 
 
-class Kind(Enum):
+class TraceKind(Enum):
     LINE = "line"
     POINTS = "points"
     MEANS = "means"  # points with intervals, and a line through them
@@ -22,14 +22,14 @@ class Kind(Enum):
 
 
 @dataclass(frozen=True)
-class Curve:
+class Trace:
     """A line, or points, in one colour and with one switch."""
 
     label: str
     color: str
     x: NDArray[Any]
     y: NDArray[Any]
-    kind: Kind = Kind.LINE
+    kind: TraceKind = TraceKind.LINE
     band: tuple[NDArray[Any], NDArray[Any]] | None = None
     """Lower and upper ends of the 95 % intervals of the points of a line."""
     within: NDArray[np.bool_] | None = None
@@ -45,7 +45,7 @@ class Panel:
     title: str
     x_label: str
     y_label: str
-    curves: Sequence[Curve]
+    curves: Sequence[Trace]
     x_log: bool = False
     y_log: bool = False
     linked: bool = True  # whether the x axis moves with the x axes of the other linked panels
@@ -54,5 +54,5 @@ class Panel:
     """Limits of y that are shown at first, for estimates that jump before they converge."""
 
 
-Rows = Sequence[Sequence[Panel]]
+FigureRows = Sequence[Sequence[Panel]]
 """The panels of a figure, from the top down; the panels of a row stand side by side."""

@@ -11,7 +11,7 @@ from bokeh.models import BoxAnnotation, ColumnDataSource, Range1d, Span, TeeHead
 from bokeh.plotting import figure
 from numpy.typing import NDArray
 
-from sigmahat.show.panel import Curve, Kind, Panel
+from sigmahat.show.panel import Panel, Trace, TraceKind
 from sigmahat.show.style import around
 
 _HEIGHT, _GREY = 300, "#888888"
@@ -49,9 +49,9 @@ def _y_limits(panel: Panel) -> tuple[float, float]:
     # Computed here, because Bokeh would build a search tree of every curve.
     values = [curve.y for curve in panel.curves]
     for curve in panel.curves:
-        if curve.kind is Kind.MEANS and curve.band is not None:
+        if curve.kind is TraceKind.MEANS and curve.band is not None:
             values += curve.band
-    if any(curve.kind is Kind.STEPS for curve in panel.curves):
+    if any(curve.kind is TraceKind.STEPS for curve in panel.curves):
         values.append(np.zeros(1))
     return _limits(values, panel.y_log)
 
@@ -90,8 +90,8 @@ def _figure(panel: Panel, linked: Range1d) -> figure:
     return plot
 
 
-def _draw(plot: figure, curve: Curve, name: str, sources: dict[int, ColumnDataSource]) -> None:
-    if curve.kind is Kind.STEPS:
+def _draw(plot: figure, curve: Trace, name: str, sources: dict[int, ColumnDataSource]) -> None:
+    if curve.kind is TraceKind.STEPS:
         some = curve.y > 0
         plot.quad(
             left=curve.x[:-1][some], right=curve.x[1:][some], top=curve.y[some], bottom=0,
@@ -101,9 +101,9 @@ def _draw(plot: figure, curve: Curve, name: str, sources: dict[int, ColumnDataSo
     # Signals with the same times share one source, which has the times once.
     source = sources.setdefault(id(curve.x), ColumnDataSource({"x": curve.x}))
     source.data[name] = curve.y
-    if curve.kind is Kind.LINE:
+    if curve.kind is TraceKind.LINE:
         _draw_line(plot, curve, name, source)
-    elif curve.kind is Kind.POINTS:
+    elif curve.kind is TraceKind.POINTS:
         plot.scatter(
             "x", name, source=source, color=curve.color, alpha=0.6, size=3 * curve.width, name=name
         )
@@ -111,7 +111,7 @@ def _draw(plot: figure, curve: Curve, name: str, sources: dict[int, ColumnDataSo
         _draw_means(plot, curve, name, source)
 
 
-def _draw_line(plot: figure, curve: Curve, name: str, source: ColumnDataSource) -> None:
+def _draw_line(plot: figure, curve: Trace, name: str, source: ColumnDataSource) -> None:
     """Draws a line in front of its band and its measured points; all parts have one name."""
     if curve.behind is not None:
         x, y = curve.behind
@@ -136,7 +136,7 @@ def _draw_line(plot: figure, curve: Curve, name: str, source: ColumnDataSource) 
         )  # fmt: skip
 
 
-def _draw_means(plot: figure, curve: Curve, name: str, source: ColumnDataSource) -> None:
+def _draw_means(plot: figure, curve: Trace, name: str, source: ColumnDataSource) -> None:
     """Whiskers, a line and points; all parts have one name, so that one switch is for all."""
     assert curve.band is not None
     source.data[f"{name}-low"], source.data[f"{name}-high"] = curve.band

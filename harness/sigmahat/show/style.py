@@ -17,7 +17,7 @@ PAGE = Path(__file__).with_name("page.css")  # colours of a page and of its plot
 
 
 @dataclass(frozen=True)
-class Quantity:
+class AxisQuantity:
     """A quantity with symbol and unit, for an axis of a plot or a row of a table."""
 
     words: str
@@ -26,12 +26,12 @@ class Quantity:
 
 
 QUANTITIES = {
-    "sigma": Quantity("stiffness", "\u03c3", "N.m/rad"),  # sigma
-    "tau_e": Quantity("flexibility torque", "τₑ", "N.m"),
-    "phi": Quantity("deformation", "φ", "rad"),
-    "theta_dot": Quantity("motor velocity", "θ̇", "rad/s"),
-    "setPoint": Quantity("set-point", "s", "1"),
-    "t": Quantity("time", "t", "s"),
+    "sigma": AxisQuantity("stiffness", "\u03c3", "N.m/rad"),  # sigma
+    "tau_e": AxisQuantity("flexibility torque", "τₑ", "N.m"),
+    "phi": AxisQuantity("deformation", "φ", "rad"),
+    "theta_dot": AxisQuantity("motor velocity", "θ̇", "rad/s"),
+    "setPoint": AxisQuantity("set-point", "s", "1"),
+    "t": AxisQuantity("time", "t", "s"),
 }
 """Quantities by the output of the estimator that has their values."""
 _DIGITS = str.maketrans("23456789", "²³⁴⁵⁶⁷⁸⁹")

@@ -23,7 +23,7 @@ from sigmahat.experiments.simulation import indices_by_comparison, run
 from sigmahat.fmi.master import EstimatorFmu, Recording
 from sigmahat.fmi.model import Value
 from sigmahat.paper.scenarios import SCENARIOS, awas
-from sigmahat.show.panel import Rows
+from sigmahat.show.panel import FigureRows
 from sigmahat.studies import compare_results
 from sigmahat.studies.compare_joint import (
     CALIBRATED,
@@ -197,7 +197,7 @@ class MethodComparison:
     def write(self, table: Sequence[ComparisonRow], folder: Path) -> None:
         compare_results.write(table, len(self.seeds), folder / "compare.csv")
 
-    def figures(self, table: Sequence[ComparisonRow]) -> dict[str, Rows]:
+    def figures(self, table: Sequence[ComparisonRow]) -> dict[str, FigureRows]:
         return {"compare": compare_results.panels(table)}
 
     def text(self, table: Sequence[ComparisonRow]) -> str:

@@ -15,7 +15,7 @@ from sigmahat.files.tables import (
     with_headings,
     write_csv,
 )
-from sigmahat.show.panel import Curve, Panel
+from sigmahat.show.panel import Panel, Trace
 from sigmahat.show.style import BLUE, VERMILION
 from sigmahat.studies.compare_joint import (
     CALIBRATED,
@@ -169,7 +169,7 @@ def panels(rows: Sequence[ComparisonRow]) -> list[list[Panel]]:
 
 
 def curves_over_frequency(rows: Sequence[ComparisonRow]) -> list[list[ComparisonRow]]:
-    """Rows of the AwAS with wrong motor data that differ in nothing but the frequency."""
+    """FigureRows of the AwAS with wrong motor data that differ in nothing but the frequency."""
     curves: dict[tuple[object, ...], list[ComparisonRow]] = {}
     for row in rows:
         if row.joint.frequency is not None:
@@ -201,7 +201,7 @@ def _panel(curves: Sequence[Sequence[ComparisonRow]]) -> Panel:
     )
 
 
-def _curve(rows: Sequence[ComparisonRow], method: str, dash: tuple[float, ...]) -> Curve:
+def _curve(rows: Sequence[ComparisonRow], method: str, dash: tuple[float, ...]) -> Trace:
     joint, given = rows[0].joint, rows[0].case
     what = case(given) if joint.coulomb else f"{lever_arm(joint)}, {case(given)}"
     mean = np.array([row.error(method) for row in rows])
@@ -211,4 +211,4 @@ def _curve(rows: Sequence[ComparisonRow], method: str, dash: tuple[float, ...]) 
         # A logarithmic scale has no place for 0.
         band = np.maximum(mean - half_width, 1e-3 * mean), mean + half_width
     frequencies = np.array([row.joint.frequency for row in rows], np.float64)
-    return Curve(f"{method}: {what}", _COLORS[method], frequencies, mean, band=band, dash=dash)
+    return Trace(f"{method}: {what}", _COLORS[method], frequencies, mean, band=band, dash=dash)

@@ -9,7 +9,7 @@ import numpy as np
 
 from sigmahat.experiments.scores import DANGEROUS_CLAIM, DANGEROUS_ERROR, SETTLED, Score
 from sigmahat.files.tables import aligned, counted, title, with_headings, write_csv
-from sigmahat.show.panel import Curve, Kind, Panel
+from sigmahat.show.panel import Panel, Trace, TraceKind
 from sigmahat.show.style import CYCLE
 from sigmahat.studies.misfit_experiment import Condition, Group, JointKind
 
@@ -103,15 +103,15 @@ def _panel(joint: str, rows: Sequence[MisfitRow], limits: tuple[float, float]) -
     ends = np.array(limits)
     corner = np.array([low, claim, claim]), np.array([error, error, high])
     curves = [
-        Curve("error = claim", _GREY, ends, ends, width=0.8),
-        Curve("dangerous", _GREY, *corner, dash=(1.0, 1.5)),
+        Trace("error = claim", _GREY, ends, ends, width=0.8),
+        Trace("dangerous", _GREY, *corner, dash=(1.0, 1.5)),
     ]
     for group in Group:
         of_group = [_figures(row) for row in rows if row.condition.group is group]
         if of_group:
             x = np.array([figures["claim"] for figures in of_group])
             y = np.array([figures["error"] for figures in of_group])
-            curves.append(Curve(group.value, _COLORS[group], x, y, Kind.POINTS))
+            curves.append(Trace(group.value, _COLORS[group], x, y, TraceKind.POINTS))
     return Panel(
         joint,
         "claim: RMS of sigma_std relative to the true stiffness [%]",

@@ -20,7 +20,7 @@ from sigmahat.experiments.pool import Progress
 from sigmahat.experiments.scenario import Sine, Sines
 from sigmahat.experiments.scores import SETTLED, Score
 from sigmahat.fmi.model import Value
-from sigmahat.show.panel import Rows
+from sigmahat.show.panel import FigureRows
 from sigmahat.studies import misfit_results
 from sigmahat.studies.misfit_experiment import (
     AWAS,
@@ -392,7 +392,7 @@ class Misfits:
     def write(self, table: Sequence[MisfitRow], folder: Path) -> None:
         misfit_results.write(table, len(self.seeds), folder / "misfits.csv")
 
-    def figures(self, table: Sequence[MisfitRow]) -> dict[str, Rows]:
+    def figures(self, table: Sequence[MisfitRow]) -> dict[str, FigureRows]:
         return {"misfits": misfit_results.panels(table)}
 
     def text(self, table: Sequence[MisfitRow]) -> str:

@@ -10,7 +10,7 @@ from sigmahat.experiments.metrics import Indices
 from sigmahat.experiments.scenario import Scenario
 from sigmahat.experiments.simulation import indices_by_comparison, run
 from sigmahat.paper.figures import FIGURES
-from sigmahat.show.panel import Rows
+from sigmahat.show.panel import FigureRows
 from sigmahat.studies import reproduce_results
 from sigmahat.studies.reproduce_results import Reproduced
 
@@ -60,7 +60,7 @@ class Reproduction:
     def write(self, table: Reproduced, folder: Path) -> None:
         reproduce_results.write(table, folder)
 
-    def figures(self, table: Reproduced) -> dict[str, Rows]:
+    def figures(self, table: Reproduced) -> dict[str, FigureRows]:
         return {name: FIGURES[name](table.recording) for name in self.scenario.figures}
 
     def text(self, table: Reproduced) -> str:

@@ -11,7 +11,7 @@ from sigmahat.experiments.simulation import run as run_scenario
 from sigmahat.fmi.instance import Slave, installed
 from sigmahat.fmi.model import FmuError
 from sigmahat.paper.scenarios import scenario
-from sigmahat.show.panel import Rows
+from sigmahat.show.panel import FigureRows
 from sigmahat.studies import sweep_summary
 from sigmahat.studies.sweep_grid import Grid, Run
 from sigmahat.studies.sweep_panels import against_parameters, distributions
@@ -76,7 +76,7 @@ class Sweep:
         write(table, folder / "sweep.parquet")
         sweep_summary.write(table, folder / "summary.csv")
 
-    def figures(self, table: SweepTable) -> dict[str, Rows]:
+    def figures(self, table: SweepTable) -> dict[str, FigureRows]:
         figures = {
             "distributions": distributions(table),
             "parameters": list(against_parameters(table)),

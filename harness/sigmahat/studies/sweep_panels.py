@@ -6,14 +6,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sigmahat.experiments.metrics import INDICES, Index, mean_interval
-from sigmahat.show.panel import COLORS, Curve, Kind, Panel
+from sigmahat.show.panel import COLORS, Panel, Trace, TraceKind
 from sigmahat.studies.sweep_table import (
     ESTIMATION,
     FAILURE,
     SCENARIO,
     ParameterColumn,
-    Role,
     SweepTable,
+    ValueSource,
     title,
 )
 
@@ -47,8 +47,8 @@ def time_of(index: Index) -> str:
 
 def abscissas(sweep: SweepTable) -> list[ParameterColumn]:
     """Columns for the x axis: errors of parameters, and other parameters with numbers."""
-    errors = [column for column in sweep.parameters(Role.ERROR) if _varies(sweep, column)]
-    others = (*sweep.parameters(Role.LISTED), *sweep.parameters(Role.DRAWN))
+    errors = [column for column in sweep.parameters(ValueSource.ERROR) if _varies(sweep, column)]
+    others = (*sweep.parameters(ValueSource.LISTED), *sweep.parameters(ValueSource.DRAWN))
     unlike = [column for column in others if not any(map(column.same_quantity, errors))]
     return [*errors, *(column for column in unlike if _varies(sweep, column))]
 
@@ -61,7 +61,7 @@ def _varies(sweep: SweepTable, column: ParameterColumn) -> bool:
 
 def has_a_value_for_each_run(sweep: SweepTable, column: ParameterColumn) -> bool:
     """Returns whether a parameter is drawn for each seed; such a plot has points, not means."""
-    return any(map(column.same_quantity, sweep.parameters(Role.DRAWN)))
+    return any(map(column.same_quantity, sweep.parameters(ValueSource.DRAWN)))
 
 
 def log_bins(values: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -81,7 +81,7 @@ def distributions(sweep: SweepTable) -> list[Panel]:
         every = {label: rows.numbers(index) for label, rows in parts(sweep).items()}
         edges = log_bins(np.concatenate([x[x > 0] for x in every.values()]))
         curves = [
-            Curve(label, COLORS[i % len(COLORS)], edges, np.histogram(x, edges)[0], Kind.STEPS)
+            Trace(label, COLORS[i % len(COLORS)], edges, np.histogram(x, edges)[0], TraceKind.STEPS)
             for i, (label, x) in enumerate(every.items())
         ]
         heading, x_label = f"Distribution of {index.name(when)}", index.title(when)
@@ -104,16 +104,16 @@ def against_parameters(sweep: SweepTable) -> Iterator[Panel]:
         )
 
 
-def _curves(sweep: SweepTable, column: ParameterColumn, index: Index) -> Iterator[Curve]:
+def _curves(sweep: SweepTable, column: ParameterColumn, index: Index) -> Iterator[Trace]:
     for i, (label, rows) in enumerate(parts(sweep).items()):
         color = COLORS[i % len(COLORS)]
         x, y = rows.numbers(column), rows.numbers(index)
         if has_a_value_for_each_run(sweep, column):
-            yield Curve(label, color, x, y, Kind.POINTS)
+            yield Trace(label, color, x, y, TraceKind.POINTS)
             continue
         at = np.unique(x)
         mean, half = np.array([mean_interval(y[x == value].tolist()) for value in at]).T
         half = np.nan_to_num(half)  # the interval of a single run is not defined
         # A logarithmic scale has no place for 0.
         band = np.maximum(mean - half, 1e-3 * mean), mean + half
-        yield Curve(label, color, at, mean, Kind.MEANS, band)
+        yield Trace(label, color, at, mean, TraceKind.MEANS, band)

@@ -15,9 +15,9 @@ from sigmahat.studies.sweep_table import (
     FAILURE,
     SCENARIO,
     ParameterColumn,
-    Role,
     SweepColumn,
     SweepTable,
+    ValueSource,
     title,
 )
 
@@ -47,7 +47,7 @@ class SummaryColumn:
 
 def means(sweep: SweepTable) -> list[SettingMean]:
     """Computes the mean of each group of runs, in the order of the table."""
-    keys: list[SweepColumn] = [SCENARIO, *sweep.parameters(Role.LISTED), ESTIMATION]
+    keys: list[SweepColumn] = [SCENARIO, *sweep.parameters(ValueSource.LISTED), ESTIMATION]
     groups: dict[tuple[Any, ...], list[int]] = {}
     for row, key in enumerate(zip(*(sweep.values(column) for column in keys), strict=True)):
         groups.setdefault(key, []).append(row)
@@ -128,7 +128,7 @@ def write(sweep: SweepTable, path: Path) -> None:
 
 def values(sweep: SweepTable) -> dict[str, object]:
     """The means for JSON, with the units of their columns."""
-    listed = sweep.parameters(Role.LISTED)
+    listed = sweep.parameters(ValueSource.LISTED)
     units = {column.name: column.unit for column in listed}
     units |= {index.field: index.unit for index in INDICES.values()}
     return {"units": units, "table": [_row(setting) for setting in means(sweep)]}

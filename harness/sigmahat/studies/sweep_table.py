@@ -33,7 +33,7 @@ def name_in_the_plant(parameter: str) -> str:
     return _NAMES_IN_THE_PLANT.get(parameter, parameter)
 
 
-class Role(str, Enum):
+class ValueSource(str, Enum):
     """Kind of the values in a column of a parameter."""
 
     LISTED = "listed"  # values that are used with every seed
@@ -43,7 +43,7 @@ class Role(str, Enum):
 
 @dataclass(frozen=True)
 class ParameterColumn:
-    role: Role
+    role: ValueSource
     owner: str  # "plant", a modality, or "estimator": all estimators
     parameter: str  # name in the FMU, "motor.B"
     unit: str | None
@@ -51,7 +51,7 @@ class ParameterColumn:
     @property
     def name(self) -> str:
         """Name for people."""
-        if self.role is Role.ERROR:
+        if self.role is ValueSource.ERROR:
             return f"error of {self.parameter}"
         return f"{self.owner}.{self.parameter}"
 
@@ -84,7 +84,7 @@ class SweepTable:
     table: pa.Table  # table with the titles of the columns as names
     columns: Sequence[SweepColumn]  # columns in the order of the table
 
-    def parameters(self, *roles: Role) -> list[ParameterColumn]:
+    def parameters(self, *roles: ValueSource) -> list[ParameterColumn]:
         """Returns the columns of parameters with the given roles."""
         return [
             column
@@ -119,12 +119,12 @@ def of_outcomes(grid: Grid, outcomes: Sequence[Outcome]) -> SweepTable:
     for full in grid.parameters:
         owner, _, name = full.partition(".")
         model = first[next(each for each in first if each != PLANT) if owner == ALL else owner]
-        role = Role.LISTED if full in grid.listed else Role.DRAWN
+        role = ValueSource.LISTED if full in grid.listed else ValueSource.DRAWN
         unit = installed(model.fmu).variable(name).unit
         parameters[full] = ParameterColumn(role, owner, name, unit)
     swept = {name_in_the_plant(each.parameter) for each in parameters.values()}
     errors = dict.fromkeys(
-        ParameterColumn(Role.ERROR, ALL, name, "%")
+        ParameterColumn(ValueSource.ERROR, ALL, name, "%")
         for own in usual.values()
         for owner, values in own.items()
         for name in values
@@ -178,7 +178,7 @@ def _column(field: pa.Field) -> SweepColumn:
     meaning = json.loads((field.metadata or {}).get(_MEANING, "{}"))
     if "parameter" in meaning:
         parameter = meaning["parameter"]
-        return ParameterColumn(**{**parameter, "role": Role(parameter["role"])})
+        return ParameterColumn(**{**parameter, "role": ValueSource(parameter["role"])})
     return {title(index): index for index in INDICES.values()}.get(field.name, str(field.name))
 
 
