@@ -11,7 +11,8 @@ set(web_includes ${SIGMAHAT_NATIVE_INCLUDES})
 list(TRANSFORM web_includes PREPEND "--includes;")
 file(GLOB web_page CONFIGURE_DEPENDS docs/web/*)
 file(GLOB web_python CONFIGURE_DEPENDS harness/sigmahat_build/web.py harness/sigmahat_build/system.py
-     harness/sigmahat/paper/*.py harness/sigmahat/experiments/scenario.py)
+     harness/sigmahat/estimator/*.py harness/sigmahat/paper/*.py
+     harness/sigmahat/experiments/scenario.py)
 add_custom_command(
   OUTPUT ${web}/compiled.js
   COMMAND ${SIGMAHAT_RUN} sigmahat_build web ${web} ${web_fmus}

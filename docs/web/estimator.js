@@ -1,8 +1,7 @@
 "use strict";
-// The estimator, the C library: variables by name on top of harness/native/joints.h.
+// The estimator, the C library: variables by name on top of harness/native/joints.h. INPUTS and POINT
+// are the names that the Python package has for the arguments of sh_joints_run, and for sh_point.
 
-const INPUTS = ["theta", "q", "theta_c", "tau", "tau_e_sensor"]; // in the order of sh_joints_run
-const POINT = ["tau_e", "tau_e_std", "sigma", "sigma_std"]; // as in sh_point
 const MOST_TICKS = 200; // of one call
 const VIOLATION = { size: 24, value: 8, range: 16 }; // of sh_violation [bytes]
 
@@ -54,7 +53,8 @@ class Estimator {
    *
    * phi: deformations [rad]; setPoint: one for all
    *
-   * Returns tau_e and tau_e_std [N.m], sigma and sigma_std [N.m/rad], an array of each.
+   * Returns an array of each member of sh_point: tau_e and tau_e_std [N.m], sigma and sigma_std
+   * [N.m/rad], sigma_per_gain [1].
    */
   evaluate(phi, setPoint) {
     const count = phi.length;

