@@ -34,7 +34,7 @@ def test_file_cut_in_the_middle(suffix: str, shell: Shell) -> None:
         (b"just a letter\nto you\n", "names of columns that"),
         (b"0,1,2\n0.1,1,2\n", "names of the columns"),
         (b"t,theta,q,tau\n", "expected rows"),
-        (b"t,t,q\n0,1,2\n", "twice"),
+        (b"t,q\n0,1,2\n1,2,3\n", "line 2 has 3 values, line 1 names 2 columns"),
     ],
 )
 def test_file_of_another_kind(content: bytes, words: str, shell: Shell) -> None:

@@ -64,6 +64,47 @@ class RowOfUnits(Note):
 
 
 @dataclass(frozen=True, kw_only=True)
+class LinesAboveTable(Note):
+    """Lines of text above the rows, other than the names of the columns, were left out."""
+
+    kind: Literal["lines_above_table"] = "lines_above_table"
+    lines: int
+
+    @property
+    def in_words(self) -> str:
+        return f"{_lines(self.lines)} of text above the rows left out"
+
+
+@dataclass(frozen=True, kw_only=True)
+class CommentsLeftOut(Note):
+    """Comments between the rows were left out."""
+
+    kind: Literal["comments_left_out"] = "comments_left_out"
+    lines: int
+
+    @property
+    def in_words(self) -> str:
+        return f"{_lines(self.lines)} of comments between the rows left out"
+
+
+@dataclass(frozen=True, kw_only=True)
+class RepeatedName(Note):
+    """A column has the name of an earlier column, and got a name of its own."""
+
+    kind: Literal["repeated_name"] = "repeated_name"
+    column: str  # name in the file
+    renamed: str  # name that it has here
+
+    @property
+    def in_words(self) -> str:
+        return f"column {self.column!r} is there again: it is called {self.renamed!r} here"
+
+
+def _lines(count: int) -> str:
+    return "1 line" if count == 1 else f"{count} lines"
+
+
+@dataclass(frozen=True, kw_only=True)
 class ShortRow(Note):
     """A row with too few values was left out."""
 
@@ -286,7 +327,7 @@ class FirstPart(Note):
 
 
 RecordingNote = Annotated[
-    Encoding | RowOfUnits | ShortRow
+    Encoding | RowOfUnits | LinesAboveTable | CommentsLeftOut | RepeatedName | ShortRow
     | Rows | NoTimeColumn | RepeatedTimes | MissingTimes
     | Unwrapped | Delayed | Interpolated | FasterThanTicks | BetweenTicks | MissingSamples
     | CounterInGap | CounterAtStart | SkippedTicks | FirstPart,

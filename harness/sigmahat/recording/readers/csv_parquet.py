@@ -1,10 +1,8 @@
 """Reads logs in CSV and Parquet files."""
 
 import weakref
-from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import suppress
-from dataclasses import dataclass
+from mmap import ACCESS_READ, mmap
 from pathlib import Path
 from tempfile import TemporaryFile
 from typing import IO, Any
@@ -18,19 +16,20 @@ from sigmahat.recording.arrow_columns import (
     first_text,
     fits_float64,
     holds_text,
-    is_number,
     numbers,
 )
 from sigmahat.recording.limits import MOST_TEXT, check_columns, check_numbers
 from sigmahat.recording.log import Array, Log, LogError
-from sigmahat.recording.notes import Encoding, RowOfUnits, ShortRow
+from sigmahat.recording.notes import CommentsLeftOut, Encoding, ShortRow
+from sigmahat.recording.readers.dialect import SPACES, dialect
 
 _BLOCK = 1 << 20  # bytes of a CSV file that are parsed at a time
 _ALWAYS_READ = 100_000_000  # uncompressed size up to which a file is not checked [bytes]
-_LINES = 20  # lines that are checked before the text is parsed
 _BUFFER = 1 << 16  # bytes of a column that are read at a time, instead of a whole row group
 _ROWS = 1 << 16  # rows of a column that are read at a time
 _FEW = 100  # rows with text that are checked at a time
+_COMMENTS = (b"#", b"%", b"//")  # signs at the beginning of a comment
+_SHOWN = 60  # characters of a row that a message shows
 
 
 class ParquetLog(Log):
@@ -110,21 +109,8 @@ class ParquetLog(Log):
         return batch
 
 
-@dataclass(frozen=True)
-class Dialect:
-    """The format of a text file that contains a table."""
-
-    names: Sequence[str]  # names of the columns; with a row of units, name and unit
-    delimiter: str  # character between the columns
-    decimal: str  # point or comma in numbers
-    encoding: str
-    head: int  # lines before the first row
-
-
 class CsvLog(Log):
-    """A text file: one line with names of columns, and rows of numbers separated by , or ; or tabs.
-
-    With ; as delimiter, numbers may have decimal commas. A second line may contain units.
+    """A text file with a table, in any of the forms of dialect.py.
 
     A temporary Parquet file with the parsed text limits the memory for a long log. Only a column
     that does not begin with numbers, such as dates, is parsed again when the column is read.
@@ -134,15 +120,17 @@ class CsvLog(Log):
         """Raises LogError if the text file does not contain a table."""
         self.dialect = dialect(path)  # format of the file
         names = self._names = list(self.dialect.names)
-        self._cut: list[int] = []
+        self._cut: list[int] = []  # number of values of a row that is too short
+        self._wrong: pa.csv.InvalidRow | None = None  # a row that ends the reading
+        self._comments = 0  # lines of comments between the rows
+        self._tidy: Path | IO[bytes] | None = None  # what _text() returns, after its first call
         self._parse = pa.csv.ParseOptions(
             delimiter=self.dialect.delimiter, invalid_row_handler=self._left_out
         )
         super().__init__(path, dict.fromkeys(names, 0))
         if self.dialect.encoding != "utf-8":
             self.notes.append(Encoding(encoding=self.dialect.encoding))
-        if self.dialect.head > 1:
-            self.notes.append(RowOfUnits(line=2))
+        self.notes += self.dialect.notes
         file = TemporaryFile(prefix="sigmahat-")  # noqa: SIM115
         weakref.finalize(self, file.close)  # closing removes the file
         self._copy = self._copied(file)
@@ -150,10 +138,13 @@ class CsvLog(Log):
         self.columns = dict.fromkeys(names, self._copy.metadata.num_rows)
         if self._cut:
             self.notes.append(ShortRow(values=self._cut[0], columns=len(names)))
+        if self._comments:
+            self.notes.append(CommentsLeftOut(lines=self._comments))
 
     def _left_out(self, row: pa.csv.InvalidRow) -> str:
         """Skips one row that is too short, such as the last row of an interrupted recording."""
         if row.actual_columns >= row.expected_columns or self._cut:
+            self._wrong = row
             return "error"
         self._cut.append(row.actual_columns)
         return "skip"
@@ -185,13 +176,21 @@ class CsvLog(Log):
             try:
                 self._write(file, {})
             except pa.ArrowInvalid as error:
-                raise LogError(
-                    f"{self.path}: {error}; the end of the file may be missing"
-                ) from error
+                raise LogError(f"{self.path}: {self._reason(error)}") from error
             texts = pa.parquet.ParquetFile(file, pre_buffer=False)
             self._write(file, {name: self._parsed(texts, name).type for name in self._names})
         pa.default_memory_pool().release_unused()
         return pa.parquet.ParquetFile(file, pre_buffer=False)
+
+    def _reason(self, error: pa.ArrowInvalid) -> str:
+        """Says why the rows cannot be read."""
+        if self._wrong is None:
+            return f"{error}; the end of the file may be missing"
+        row = self._wrong
+        return (
+            f"the row {row.text[:_SHOWN]!r} has {row.actual_columns} values, the other rows "
+            f"{row.expected_columns}; remove it, or save the log again"
+        )
 
     def _write(self, file: IO[bytes], kinds: Mapping[str, pa.DataType]) -> None:
         """Writes the Parquet copy; columns without a numeric type become text."""
@@ -211,6 +210,7 @@ class CsvLog(Log):
     def _stream(self, types: Mapping[str, pa.DataType]) -> pa.csv.CSVStreamingReader:
         """Opens a reader of all columns; the first block determines types that are not given."""
         self._cut.clear()  # the text is parsed more than once
+        self._wrong = None
         options = pa.csv.ConvertOptions(column_types=types, decimal_point=self.dialect.decimal)
         read = pa.csv.ReadOptions(
             use_threads=False,
@@ -219,7 +219,35 @@ class CsvLog(Log):
             skip_rows=self.dialect.head,
             encoding=self.dialect.encoding,
         )
-        return pa.csv.open_csv(self.path, read, self._parse, options)
+        return pa.csv.open_csv(self._text(), read, self._parse, options)
+
+    def _text(self) -> Path | IO[bytes]:
+        """The text of the table without comments between its rows, and with one delimiter between
+        two columns: the file itself, or a copy.
+        """
+        if self._tidy is None:
+            is_tidy = not self._is_aligned and not _has_comments(self.path)
+            self._tidy = self.path if is_tidy else self._copied_text()
+        if not isinstance(self._tidy, Path):
+            self._tidy.seek(0)
+        return self._tidy
+
+    def _copied_text(self) -> IO[bytes]:
+        copy = TemporaryFile(prefix="sigmahat-")  # noqa: SIM115
+        weakref.finalize(self, copy.close)
+        with self.path.open("rb") as file:
+            for number, line in enumerate(file):
+                text = line.lstrip()
+                if number >= self.dialect.head and text.startswith(_COMMENTS):
+                    self._comments += 1
+                    continue
+                copy.write(b" ".join(text.split()) + b"\n" if self._is_aligned else line)
+        return copy
+
+    @property
+    def _is_aligned(self) -> bool:
+        """Whether any number of spaces is between two columns."""
+        return self.dialect.delimiter == SPACES
 
     def _parsed(self, copy: pa.parquet.ParquetFile, name: str) -> pa.ChunkedArray:
         """Parses a text column of the Parquet copy; the type fits all values of the column."""
@@ -229,55 +257,10 @@ class CsvLog(Log):
         return pa.csv.read_csv(pa.BufferReader(text.getvalue()), convert_options=options).column(0)
 
 
-def _first_lines(path: Path) -> tuple[list[str], str]:
-    """Reads the first lines and finds the encoding. Raises LogError for a binary file."""
-    for encoding in ("utf-8", "windows-1252"):
-        with path.open(encoding=encoding, newline="") as file, suppress(UnicodeDecodeError):
-            lines = [file.readline(_BLOCK) for _ in range(_LINES)]
-            if all(c.isprintable() or c in "\t\r\n\ufeff" for line in lines for c in line):
-                return lines, encoding
-    raise LogError(
-        f"{path}: unknown binary format; expected CSV, Parquet, MAT, HDF5, MCAP or a ROS 2 bag"
-    )
-
-
-def dialect(path: Path) -> Dialect:
-    """Detects the format of a text file. Raises LogError if the file contains no table."""
-    lines, encoding = _first_lines(path)
-    for i, line in enumerate(lines, 1):
-        if len(line) >= _BLOCK:
-            raise LogError(f"{path}: expected lines of at most {_BLOCK} characters; see line {i}")
-    head, first, *rows = (line.strip("\r\n").removeprefix("\ufeff") for line in lines)
-    delimiter = max(",;\t", key=head.count)
-    names = [cell.strip().strip('"') for cell in head.split(delimiter)]
-    if delimiter not in head:
-        raise LogError(
-            f"{path}: line 1 is {head[:40]!r}, expected names of columns that commas, semicolons "
-            "or tabs separate"
-        )
-    if all(is_number(name) for name in names):
-        raise LogError(f"{path}: line 1 has numbers, expected the names of the columns")
-    repeated, count = Counter(names).most_common(1)[0]
-    if count > 1:
-        raise LogError(f"{path}: line 1 names column {repeated!r} twice")
-    check_columns(path, len(names))
-    if not first:
-        raise LogError(f"{path}: expected rows below the column names, found none; record it again")
-    units = [cell.strip().strip('"') for cell in first.split(delimiter)]
-    has_units = len(units) == len(names) and rows[0] != "" and not any(map(_may_be_value, units))
-    if has_units:
-        given = zip(names, (unit.strip("[]()") for unit in units), strict=True)
-        names = [f"{name} [{unit}]" if unit else name for name, unit in given]
-    else:
-        rows.insert(0, first)
-    text = "".join(rows)
-    comma = delimiter == ";" and "," in text and "." not in text
-    return Dialect(names, delimiter, "," if comma else ".", encoding, 2 if has_units else 1)
-
-
-def _may_be_value(cell: str) -> bool:
-    """Returns whether a cell may be a number, a date or a missing value instead of a unit."""
-    return cell[:1].isdigit() or (is_number(cell.replace(",", ".")) and cell != "")
+def _has_comments(path: Path) -> bool:
+    """Whether lines of a file begin with the sign of a comment; the first line is not looked at."""
+    with path.open("rb") as file, mmap(file.fileno(), 0, access=ACCESS_READ) as text:
+        return any(text.find(b"\n" + sign) >= 0 for sign in _COMMENTS)
 
 
 def _is_flat(kind: pa.DataType) -> bool:
