@@ -20,7 +20,7 @@ LONGEST_LINE = 1 << 20  # characters
 _LINES = 200  # that are looked at to find the table
 _COMMENT = re.compile(r"\s*(#|%|//)+\s?")
 _SEPARATOR = re.compile(r"sep=(.)", re.IGNORECASE)  # the first line, for Excel
-_DELIMITERS = "\t;,"
+_DELIMITERS = ("\t", ";", ",")
 SPACES = " "  # delimiter of a table whose columns are aligned with any number of spaces
 _ALIKE = 3  # lines with equally many values that show the delimiter
 _SHOWN = 40  # characters of a line that a message shows
@@ -116,8 +116,7 @@ class _Table:
                 count = len(rows[0])
                 if count > 1 and all(len(row) == count and _is_row(row) for row in rows):
                     return delimiter
-        first = self._lines[self._texts[0]]
-        return max(_DELIMITERS, key=lambda delimiter: first.count(delimiter))
+        return max(_DELIMITERS, key=self._lines[self._texts[0]].count)
 
     def _first_row(self) -> int | None:
         """The first line of values that is followed by lines with as many, if any follow."""
