@@ -179,7 +179,12 @@ sh_status sh_set(const sh_access *access, const void *values)
         return SH_ERROR;
     }
     for (i = 0; i < access->count; ++i) {
-        sh_write(instance, &sh_fmu_model.variables[access->references[i]], load(access, values, i));
+        const sh_variable *variable = &sh_fmu_model.variables[access->references[i]];
+
+        sh_write(instance, variable, load(access, values, i));
+        if (sh_is_parameter(variable) && sh_fmu_model.follow != NULL) {
+            sh_fmu_model.follow(instance->model, variable->offset);
+        }
     }
     return SH_OK;
 }

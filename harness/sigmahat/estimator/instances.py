@@ -33,6 +33,14 @@ class Output(ctypes.Structure):
     _fields_ = (("variable", ctypes.c_uint), ("values", ctypes.c_void_p))
 
 
+def start_values(samplePeriod: float) -> dict[str, Value]:
+    """Returns all parameters of an estimator of which only samplePeriod [s] is set.
+
+    Start values that depend on it follow it. Raises ValueError for a period out of its range.
+    """
+    return Joints([{"samplePeriod": samplePeriod}]).parameters(0)
+
+
 class Joints:
     """One estimator per joint, in the order of the parameters."""
 
@@ -46,7 +54,9 @@ class Joints:
         self.stride = -(-size // _CACHE_LINE) * _CACHE_LINE
         self.memory = np.zeros((len(parameters), self.stride), np.uint8)
         for joint, each in enumerate(parameters):
-            self._library.sh_joint_default(self._address(joint))
+            period = each.get("samplePeriod", float(self.model.variable("samplePeriod").start))
+            start = self.model.number("samplePeriod", period)
+            self._library.sh_joint_default(self._address(joint), start)
             self.set(joint, each)
         self.start()
 
