@@ -5,7 +5,6 @@ from typing import Any
 from zipfile import ZipFile
 
 import fmpy
-import numpy as np
 import pytest
 
 import sigmahat
@@ -50,7 +49,10 @@ def test_each_enumeration_is_an_integer_with_the_same_numbers(
 
 
 class _Instance3(Instance3):
-    types = {**Instance3.types, "Int64": Instance3.types["Enumeration"]}
+    types = {  # noqa: RUF012
+        **Instance3.types,
+        "Int64": Instance3.types["Enumeration"],
+    }
 
 
 @pytest.mark.parametrize("version", VERSIONS)
@@ -67,7 +69,7 @@ def test_it_takes_the_numbers_and_gives_the_same_results(
                 fmu.set_all({n: SIGNALS[n](k * 1e-3) for n in names(fmu, "input")})
                 assert fmu.step(k * 1e-3, 1e-3) == OK
             results.append(fmu.get_all(names(fmu, "output")))
-    np.testing.assert_array_equal(*results)
+    assert results[0] == results[1]
     assert results[0] != [0.0] * len(results[0])
 
 
