@@ -139,7 +139,7 @@ static void judge_inputs(sh_estimator_fmu *fmu, double h, double ticks, int held
                      "size) to samplePeriod, or set input derivatives (FMI 2.0).",
                      h, ticks, T);
     } else {
-        fmu->until_sure = fmax(fmu->until_sure - ticks, 0.0);
+        fmu->until_sure = fmu->until_sure > ticks ? fmu->until_sure - ticks : 0.0;
     }
     if (fmu->until_sure > 0.0 && output->doubt != SH_DOUBT_NO_CLAIM) {
         output->doubt = output->doubt > SH_DOUBT_HELD_INPUTS ? output->doubt : SH_DOUBT_HELD_INPUTS;
