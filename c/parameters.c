@@ -11,7 +11,8 @@ typedef struct {
     size_t offset; /* in sh_parameters */
     const char *range;
     sh_real start;
-    sh_real min, max; /* allowed, too */
+    sh_real min, max;  /* allowed, too */
+    int within_period; /* 1: starts at most at 1 / samplePeriod */
 } real_parameter;
 
 typedef struct {
@@ -24,7 +25,9 @@ typedef struct {
 
 #define AT(place) #place, offsetof(sh_parameters, place)
 #define REAL(place, start, min, max, range)                                                        \
-    {AT(place), range, (sh_real)(start), (sh_real)(min), (sh_real)(max)},
+    {AT(place), range, (sh_real)(start), (sh_real)(min), (sh_real)(max), 0},
+#define RATE(place, start, min, max, range)                                                        \
+    {AT(place), range, (sh_real)(start), (sh_real)(min), (sh_real)(max), 1},
 #define INTEGER(place, start, min, max, range) {AT(place), range, start, min, max},
 
 /* The limits 1e-9, 1e-15 and 1e-30 replace the condition "above 0", and are far below the values of real machines. The
@@ -51,6 +54,21 @@ void sh_parameters_default(sh_parameters *p)
         const integer_parameter *r = &INTEGERS[i];
         /* The compiler option -DSH_MAX_N or -DSH_MAX_M may set a maximum below the start value. */
         *(int *)(void *)(bytes + r->offset) = r->start < r->max ? r->start : r->max;
+    }
+}
+
+void sh_parameters_default_at(sh_parameters *p, sh_real samplePeriod)
+{
+    char *bytes = (char *)p;
+    int i;
+
+    sh_parameters_default(p);
+    p->samplePeriod = samplePeriod;
+    for (i = 0; i < REAL_COUNT; ++i) {
+        sh_real *value = (sh_real *)(void *)(bytes + REALS[i].offset);
+        if (REALS[i].within_period && *value * samplePeriod > 1) {
+            *value = 1 / samplePeriod;
+        }
     }
 }
 

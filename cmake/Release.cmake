@@ -1,9 +1,10 @@
-# The target release writes all FMUs and the system to release/, with binaries for all platforms. It also
-# writes a wheel for each platform and the source distribution to release/python/.
+# The target release writes all FMUs and the system to release/, with binaries for all platforms, and
+# copies of the estimators without enumerations. It also writes a wheel for each platform and the source distribution to release/python/.
 #
 # The cross compiler is a large download, so only the targets release and web install it.
 sigmahat_add_packages(release)
 
+set(without_enumerations "")
 foreach(fmi 2 3)
   get_property(fmus GLOBAL PROPERTY SIGMAHAT_FMUS_${fmi})
   set(released_${fmi} "")
@@ -17,6 +18,17 @@ foreach(fmi 2 3)
       DEPENDS ${fmu} ${packages_release}
       COMMENT "Compiling ${file} for every platform" VERBATIM)
     list(APPEND released_${fmi} ${release})
+    # For importers that cannot set enumerations. No plant has any.
+    if(file MATCHES "Estimator")
+      cmake_path(GET file STEM name)
+      set(integers ${PROJECT_BINARY_DIR}/release/${name}_Integers.fmu)
+      add_custom_command(
+        OUTPUT ${integers}
+        COMMAND ${SIGMAHAT_RUN} sigmahat_build integers ${release} ${integers}
+        DEPENDS ${release} harness/sigmahat_build/integers.py
+        COMMENT "Copy of ${file} without enumerations" VERBATIM)
+      list(APPEND without_enumerations ${integers})
+    endif()
   endforeach()
 endforeach()
 set(release ${PROJECT_BINARY_DIR}/release)
@@ -48,9 +60,11 @@ set(bill ${release}/sigmahat.cdx.json)
 add_custom_command(
   OUTPUT ${bill}
   COMMAND ${SIGMAHAT_RUN} sigmahat_build bill ${bill} ${release} --version ${PROJECT_VERSION}
-  DEPENDS ${released_2} ${released_3} ${release}/sigmahat-awas.ssp ${release}/python.stamp
+  DEPENDS ${released_2} ${released_3} ${without_enumerations} ${release}/sigmahat-awas.ssp
+          ${release}/python.stamp
           ${release}/sigmahat-modelica.zip ${packages_release}
           harness/sigmahat_build/bill.py
   COMMENT "Bill of materials" VERBATIM)
-add_custom_target(release DEPENDS ${released_2} ${released_3} ${release}/sigmahat-awas.ssp
-                                  ${release}/python.stamp ${bill})
+add_custom_target(
+  release DEPENDS ${released_2} ${released_3} ${without_enumerations} ${release}/sigmahat-awas.ssp
+                  ${release}/python.stamp ${bill})

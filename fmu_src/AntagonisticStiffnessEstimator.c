@@ -92,7 +92,15 @@ static int is_state(const void *model)
     return 1;
 }
 
-static sh_status step(void *model, double t, double h, sh_instance *log)
+/* The parameters of which start values follow another one are common, and side[0] begins at offset 0. */
+static void follow(void *model, size_t offset)
+{
+    AntagonisticStiffnessEstimator *fmu = model;
+
+    sh_estimator_fmu_follow(&fmu->side[0], offset);
+}
+
+static sh_status step(void *model, double t, double h, int held, sh_instance *log)
 {
     AntagonisticStiffnessEstimator *fmu = model;
     sh_status status = SH_OK;
@@ -102,7 +110,7 @@ static sh_status step(void *model, double t, double h, sh_instance *log)
     fmu->side[1].input_derivative.q = fmu->side[0].input_derivative.q;
     fmu->side[1].parameters = parameters_of(fmu, 1);
     for (i = 0; i < 2; ++i) {
-        const sh_status of_side = sh_estimator_fmu_step(&fmu->side[i], t, h, WHO[i], log);
+        const sh_status of_side = sh_estimator_fmu_step(&fmu->side[i], t, h, held, WHO[i], log);
         if (of_side > status) {
             status = of_side;
         }
@@ -111,4 +119,4 @@ static sh_status step(void *model, double t, double h, sh_instance *log)
     return status;
 }
 
-SH_DEFINE_MODEL(AntagonisticStiffnessEstimator, SH_ESTIMATOR_DERIVATIVE_OFFSET, check);
+SH_DEFINE_MODEL(AntagonisticStiffnessEstimator, SH_ESTIMATOR_DERIVATIVE_OFFSET, check, follow);

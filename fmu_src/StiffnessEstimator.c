@@ -24,9 +24,14 @@ static int is_state(const void *model)
     return sh_estimator_fmu_is_state(fmu, &fmu->parameters);
 }
 
-static sh_status step(void *model, double t, double h, sh_instance *log)
+static void follow(void *model, size_t offset)
 {
-    return sh_estimator_fmu_step(model, t, h, "", log);
+    sh_estimator_fmu_follow(model, offset);
 }
 
-SH_DEFINE_MODEL(sh_estimator_fmu, SH_ESTIMATOR_DERIVATIVE_OFFSET, check);
+static sh_status step(void *model, double t, double h, int held, sh_instance *log)
+{
+    return sh_estimator_fmu_step(model, t, h, held, "", log);
+}
+
+SH_DEFINE_MODEL(sh_estimator_fmu, SH_ESTIMATOR_DERIVATIVE_OFFSET, check, follow);

@@ -14,17 +14,35 @@ sh_status sh_estimator_fmu_check(const sh_parameters *parameters, const char *wh
     return SH_ERROR;
 }
 
+void sh_estimator_fmu_follow(sh_estimator_fmu *fmu, size_t offset)
+{
+    sh_parameters *p = &fmu->parameters;
+
+    if (offset == offsetof(sh_estimator_fmu, parameters.residual.K_I)) {
+        fmu->has_K_I = 1;
+    } else if (offset == offsetof(sh_estimator_fmu, parameters.regression.bandwidth)) {
+        fmu->has_bandwidth = 1;
+    } else if (offset == offsetof(sh_estimator_fmu, parameters.samplePeriod)) {
+        sh_parameters start;
+        sh_parameters_default_at(&start, p->samplePeriod);
+        p->residual.K_I = fmu->has_K_I ? p->residual.K_I : start.residual.K_I;
+        p->regression.bandwidth =
+            fmu->has_bandwidth ? p->regression.bandwidth : start.regression.bandwidth;
+    }
+}
+
 void sh_estimator_fmu_initialize(sh_estimator_fmu *fmu)
 {
     sh_estimator_start(&fmu->estimator, &fmu->parameters, &fmu->output);
     fmu->ahead = 0.0; /* the first tick is at the start time */
     fmu->strained = 0;
+    fmu->until_sure = 0.0;
 }
 
 int sh_estimator_fmu_is_state(const sh_estimator_fmu *fmu, const sh_parameters *parameters)
 {
     /* If `ahead`, the number of periods until the next tick, were far below 0 or NaN, a step would never end. */
-    return fmu->ahead >= -1.0 && fmu->ahead <= 1.0 &&
+    return fmu->ahead >= -1.0 && fmu->ahead <= 1.0 && fmu->until_sure >= 0.0 &&
            sh_estimator_check(&fmu->estimator, parameters) == 0;
 }
 
@@ -104,15 +122,41 @@ static sh_status tick(sh_estimator_fmu *fmu, double t, double after, const char 
     return status;
 }
 
+/* Several ticks with the same inputs look like a motion in jumps. Values are not compared, because inputs may rest. The
+ * regression takes the jumps for excitation, so its deviation is too small. A method without a claim needs no doubt.
+ */
+static void judge_inputs(sh_estimator_fmu *fmu, double h, double ticks, int held, sh_instance *log)
+{
+    const double T = fmu->parameters.samplePeriod;
+    sh_estimate *output = &fmu->output;
+
+    if (held && ticks > 1.0) {
+        fmu->until_sure = ceil(1.0 / T);
+        sh_warn_once(log,
+                     "A communication step of %.9g s has %.0f ticks of samplePeriod = %.9g s with "
+                     "the same inputs: the stiffness may be far off. Set samplePeriod to the "
+                     "communication step, or the step of the importer (output_interval, step "
+                     "size) to samplePeriod, or set input derivatives (FMI 2.0).",
+                     h, ticks, T);
+    } else {
+        fmu->until_sure = fmu->until_sure > ticks ? fmu->until_sure - ticks : 0.0;
+    }
+    if (fmu->until_sure > 0.0 && output->doubt != SH_DOUBT_NO_CLAIM) {
+        output->doubt = output->doubt > SH_DOUBT_HELD_INPUTS ? output->doubt : SH_DOUBT_HELD_INPUTS;
+        output->confident = 0;
+    }
+}
+
 /* Ticks are counted in sample periods, because the rounding errors of the importer's time add up. A communication step
  * of one sample period always contains exactly one tick, even after many steps.
  */
-sh_status sh_estimator_fmu_step(sh_estimator_fmu *fmu, double t, double h, const char *who,
-                                sh_instance *log)
+sh_status sh_estimator_fmu_step(sh_estimator_fmu *fmu, double t, double h, int held,
+                                const char *who, sh_instance *log)
 {
     const double T = fmu->parameters.samplePeriod, periods = h / T;
     /* A tick within the tolerance of the end of a step moves to the next step. Even tiny steps may have a tick. */
     const double tolerance = periods < 2e-6 ? periods / 2.0 : 1e-6;
+    double ticks = 0.0;
     sh_status status = SH_OK;
 
     if (periods > MAX_TICKS) {
@@ -128,7 +172,9 @@ sh_status sh_estimator_fmu_step(sh_estimator_fmu *fmu, double t, double h, const
             status = SH_WARNING;
         }
         fmu->ahead += 1.0;
+        ticks += 1.0;
     }
     fmu->ahead -= periods;
+    judge_inputs(fmu, h, ticks, held, log);
     return status;
 }

@@ -11,8 +11,11 @@ typedef struct {
     sh_measurement input_derivative;
     sh_estimate output;
     sh_estimator estimator;
-    double ahead; /* time from the communication point to the next tick [sample periods] */
-    int strained; /* 1 after the warning about a too large deformation was logged */
+    double ahead;      /* time from the communication point to the next tick [sample periods] */
+    int strained;      /* 1 after the warning about a too large deformation was logged */
+    double until_sure; /* ticks until the estimate may be trusted after a step with held inputs */
+    int has_K_I, has_bandwidth; /* 1: the importer has set this parameter; 0: it has a start value,
+                                   which follows samplePeriod */
 } sh_estimator_fmu;
 
 /* Offset in bytes from an input to the time derivative of this input in sh_estimator_fmu. */
@@ -24,13 +27,15 @@ enum {
 /* Like is_state of sh_model: returns 1 if the estimator can continue from its state with these parameters. */
 int sh_estimator_fmu_is_state(const sh_estimator_fmu *fmu, const sh_parameters *parameters);
 
-/* Like check, initialize and step of sh_model. The ticks are at t_k = start + k T. A step from t to t + h runs all
- * ticks with t <= t_k < t + h. Messages begin with `who`, the name of one of several estimators, or "".
+/* Like check, follow, initialize and step of sh_model. The ticks are at t_k = start + k T. A step from t to t + h runs all
+ * ticks with t <= t_k < t + h. A step of several ticks with held inputs gives a warning, and a doubt for one second
+ * (SH_DOUBT_HELD_INPUTS). Messages begin with `who`, the name of one of several estimators, or "".
  */
 sh_status sh_estimator_fmu_check(const sh_parameters *parameters, const char *who,
                                  sh_instance *log);
+void sh_estimator_fmu_follow(sh_estimator_fmu *fmu, size_t offset);
 void sh_estimator_fmu_initialize(sh_estimator_fmu *fmu);
-sh_status sh_estimator_fmu_step(sh_estimator_fmu *fmu, double t, double h, const char *who,
-                                sh_instance *log);
+sh_status sh_estimator_fmu_step(sh_estimator_fmu *fmu, double t, double h, int held,
+                                const char *who, sh_instance *log);
 
 #endif

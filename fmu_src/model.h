@@ -42,6 +42,11 @@ typedef struct {
 typedef struct sh_instance sh_instance;
 void sh_report(sh_instance *instance, sh_status status, const char *format, ...);
 
+/* Sends a warning as sh_report does, but only the first one of an instance, until the instance is reset. A state from
+ * before the warning, which an importer restores, does not bring the warning back.
+ */
+void sh_warn_once(sh_instance *instance, const char *format, ...);
+
 typedef struct {
     const char *identifier; /* modelIdentifier */
     const char *guid;       /* GUID of FMI 2.0 and instantiation token of FMI 3.0 */
@@ -54,6 +59,10 @@ typedef struct {
      * or SH_ERROR after a message. A model without constraints sets `check` to NULL.
      */
     sh_status (*check)(const void *model, sh_instance *log);
+    /* Called after the importer has set the parameter at an offset in the model's struct, so that start values can
+     * follow it. A model without such start values sets `follow` to NULL.
+     */
+    void (*follow)(void *model, size_t offset);
     /* Computes state and outputs at time t [s] from parameters and inputs. `initialize` may be called repeatedly. */
     void (*initialize)(void *model, double t);
     /* Returns 1 if an initialised model can advance from the state in `model`. The shell calls `is_state` for a
@@ -61,15 +70,15 @@ typedef struct {
      */
     int (*is_state)(const void *model);
     /* Advances the model from t to t + h, where h > 0. At a time s in [t, t + h] an input is u + du/dt (s - t).
-     * Returns SH_OK, or SH_WARNING or SH_ERROR after a message.
+     * `held` is 1 if the importer has set no du/dt for this step. Returns SH_OK, or SH_WARNING or SH_ERROR after a message.
      */
-    sh_status (*step)(void *model, double t, double h, sh_instance *log);
+    sh_status (*step)(void *model, double t, double h, int held, sh_instance *log);
 } sh_model;
 
 extern const sh_model sh_fmu_model;
 
 /* Defines sh_fmu_model from variables.h and from the functions initialize, is_state and step of the including file. */
-#define SH_DEFINE_MODEL(Struct, offset_of_derivatives, check_or_null)                              \
+#define SH_DEFINE_MODEL(Struct, offset_of_derivatives, check_or_null, follow_or_null)              \
     const sh_model sh_fmu_model = {                                                                \
         .identifier = SH_IDENTIFIER,                                                               \
         .guid = SH_GUID,                                                                           \
@@ -78,6 +87,7 @@ extern const sh_model sh_fmu_model;
         .count = sizeof VARIABLES / sizeof VARIABLES[0],                                           \
         .derivative_offset = (offset_of_derivatives),                                              \
         .check = (check_or_null),                                                                  \
+        .follow = (follow_or_null),                                                                \
         .initialize = initialize,                                                                  \
         .is_state = is_state,                                                                      \
         .step = step,                                                                              \

@@ -104,7 +104,7 @@ static size_t largest_input(const double *u, const double *u_end)
     return largest;
 }
 
-static sh_status step(void *model, double t, double h, sh_instance *log)
+static sh_status step(void *model, double t, double h, int held, sh_instance *log)
 {
     sh_plant *plant = model;
     double x[SH_PLANT_STATES], u[SH_PLANT_INPUTS], du[SH_PLANT_INPUTS], u_end[SH_PLANT_INPUTS];
@@ -112,6 +112,7 @@ static sh_status step(void *model, double t, double h, sh_instance *log)
     const double periods = SH_PLANT_NORMALS > 0 ? h / plant->samplePeriod : 0.0; /* of the noise */
     size_t i;
 
+    (void)held; /* a held torque is a torque */
     for (i = 0; i < SH_PLANT_INPUTS; ++i) {
         const double begin = sine(plant, i, t), end = sine(plant, i, t + h);
 
@@ -154,4 +155,4 @@ static sh_status step(void *model, double t, double h, sh_instance *log)
     return SH_OK;
 }
 
-SH_DEFINE_MODEL(sh_plant, offsetof(sh_plant, du) - offsetof(sh_plant, u), NULL);
+SH_DEFINE_MODEL(sh_plant, offsetof(sh_plant, du) - offsetof(sh_plant, u), NULL, NULL);

@@ -7,7 +7,8 @@
  *     sh_violation violation;
  *     sh_estimator estimator;
  *     sh_estimate estimate;
- *     sh_parameters_default(&p);
+ *     sh_parameters_default_at(&p, 1e-3);
+ *     p.motor.gamma = ...
  *     if (sh_parameters_check(&p, &violation)) ...
  *     sh_estimator_start(&estimator, &p, &estimate);
  *     every p.samplePeriod seconds:
@@ -91,7 +92,9 @@ enum {
     SH_DOUBT_FRICTION,           /* D_theta_hat is far from its prior, or below 0 */
     SH_DOUBT_INERTIA,            /* B_hat is beyond three std deviations of its prior */
     SH_DOUBT_NEGATIVE_STIFFNESS, /* sigma is below 0 */
-    SH_DOUBT_CHANGE /* stiffness or friction may have changed, the estimate does not follow yet */
+    SH_DOUBT_CHANGE, /* stiffness or friction may have changed, the estimate does not follow yet */
+    SH_DOUBT_HELD_INPUTS /* samples were repeated; the library never reports it, as it cannot know.
+                            A caller that repeats samples may, as the FMUs do */
 };
 
 /* Largest orders of the polynomials (18) and (19), in the deformation and in the set-point. These orders determine
@@ -323,6 +326,11 @@ typedef struct sh_estimator sh_estimator;
  * at most SH_MAX_N and SH_MAX_M.
  */
 void sh_parameters_default(sh_parameters *p);
+
+/* The same for samples that are samplePeriod [s] apart. Where 1 / samplePeriod is lower than the start value of
+ * residual.K_I or regression.bandwidth, the rate starts at 1 / samplePeriod: filters are not faster than the samples.
+ */
+void sh_parameters_default_at(sh_parameters *p, sh_real samplePeriod);
 
 /* Returns 0 if every parameter is in its range. Otherwise, returns 1 and describes the first parameter outside its
  * range in violation. The strings in violation are constants of the library.

@@ -59,8 +59,7 @@ const parameters = {
 
   /** A message of the estimator, and what to do where it names a value that the user has not typed. */
   withAdvice(message) {
-    if (/samplePeriod/.test(message)) return `${message} Is the unit of the time right? `
-      + "A log with steps of more than 5.7 ms needs a smaller regression.bandwidth, which the command sigmahat estimate takes.";
+    if (/samplePeriod/.test(message)) return `${message} Is the unit of the time right?`;
     const typed = this.typed();
     const measured = Object.keys(MEASURED).find((name) => message.startsWith(`${name}: `) && !(name in typed));
     return measured ? `${message}. It comes from the log: look at the units and the gear ratio, or fill it in.` : message;

@@ -170,6 +170,19 @@ sh_status sh_get(const sh_access *access, void *values)
     return SH_OK;
 }
 
+/* Tells the model which parameters were set. */
+static void let_start_values_follow(sh_instance *instance, const sh_access *access)
+{
+    size_t i;
+
+    for (i = 0; i < access->count; ++i) {
+        const sh_variable *variable = &sh_fmu_model.variables[access->references[i]];
+        if (sh_is_parameter(variable)) {
+            sh_fmu_model.follow(instance->model, variable->offset);
+        }
+    }
+}
+
 sh_status sh_set(const sh_access *access, const void *values)
 {
     sh_instance *instance = sh_begin_set(access, values);
@@ -180,6 +193,9 @@ sh_status sh_set(const sh_access *access, const void *values)
     }
     for (i = 0; i < access->count; ++i) {
         sh_write(instance, &sh_fmu_model.variables[access->references[i]], load(access, values, i));
+    }
+    if (instance->parameters_unchecked && sh_fmu_model.follow != NULL) {
+        let_start_values_follow(instance, access);
     }
     return SH_OK;
 }

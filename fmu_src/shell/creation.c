@@ -53,6 +53,7 @@ static void set_start_values(sh_instance *instance)
     instance->outputs_stale = 1;
     instance->parameters_unchecked = 1;
     instance->slopes_end = 0;
+    instance->warned = 0;
 }
 
 sh_instance *sh_create(const sh_importer *importer, const char *name, const char *guid,

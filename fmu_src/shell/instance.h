@@ -42,7 +42,9 @@ struct sh_instance {
     double previous_step;     /* length of the last step [s]; 0 before the first step */
     int outputs_stale;        /* 1: a value was set after the outputs were computed */
     int parameters_unchecked; /* 1: a parameter was set after the last check */
-    size_t slopes_end;        /* variables from this index on have input derivatives of 0 */
+    size_t slopes_end;        /* no variable from this index on has an input derivative; 0: the
+                                 inputs are held */
+    int warned;               /* 1 after sh_warn_once */
     void *model;              /* struct of the model, with sh_fmu_model.size bytes */
 };
 

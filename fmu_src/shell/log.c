@@ -32,19 +32,39 @@ static void escape(char *copy, size_t size, const char *text)
     copy[length] = '\0';
 }
 
-void sh_report(sh_instance *instance, sh_status status, const char *format, ...)
+static void send(const sh_instance *instance, sh_status status, const char *format,
+                 va_list arguments)
 {
     char text[512], escaped[1024];
-    va_list arguments;
 
     if (instance->importer.logger == NULL || !(instance->categories & KNOWN[status].category)) {
         return;
     }
-    va_start(arguments, format);
     (void)vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
     escape(escaped, sizeof escaped, text);
     sh_deliver(instance, status, KNOWN[status].name, escaped);
+}
+
+void sh_report(sh_instance *instance, sh_status status, const char *format, ...)
+{
+    va_list arguments;
+
+    va_start(arguments, format);
+    send(instance, status, format, arguments);
+    va_end(arguments);
+}
+
+void sh_warn_once(sh_instance *instance, const char *format, ...)
+{
+    va_list arguments;
+
+    if (instance->warned) {
+        return;
+    }
+    instance->warned = 1;
+    va_start(arguments, format);
+    send(instance, SH_WARNING, format, arguments);
+    va_end(arguments);
 }
 
 sh_status sh_find_categories(sh_instance *instance, size_t count, const char *const categories[],

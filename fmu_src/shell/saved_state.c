@@ -19,7 +19,7 @@ typedef struct {
     uint32_t state; /* sh_state */
     char guid[GUID_LENGTH];
     double time, stop_time, steps, previous_step;
-    uint64_t outputs_stale;
+    uint32_t outputs_stale, slopes_end;
     uint64_t checksum; /* checksum of the whole block, computed with checksum = 0 */
 } state_header;
 
@@ -58,6 +58,7 @@ static void write_block(const sh_instance *instance, void *block)
     header.steps = instance->steps;
     header.previous_step = instance->previous_step;
     header.outputs_stale = instance->outputs_stale != 0;
+    header.slopes_end = (uint32_t)instance->slopes_end;
     (void)memcpy(block, &header, sizeof header);
     (void)memcpy((char *)block + sizeof header, instance->model, sh_fmu_model.size);
 }
@@ -90,8 +91,9 @@ static void read_header(sh_instance *instance, const void *block)
     instance->steps = header.steps;
     instance->previous_step = header.previous_step;
     instance->outputs_stale = header.outputs_stale != 0;
-    instance->parameters_unchecked = 1;        /* the next step must check the parameters */
-    instance->slopes_end = sh_fmu_model.count; /* the state may contain input derivatives */
+    instance->parameters_unchecked = 1; /* the next step must check the parameters */
+    instance->slopes_end =
+        header.slopes_end < sh_fmu_model.count ? header.slopes_end : sh_fmu_model.count;
 }
 
 /* Checks a serialised state. Returns NULL if the state is valid, else the defect as text, such as "is truncated". */

@@ -198,7 +198,7 @@ sh_status sh_communication_step(void *handle, double t, double h, const char *fu
     if (check_parameters(instance) != SH_OK) {
         return SH_ERROR;
     }
-    status = sh_fmu_model.step(instance->model, begin, length, instance);
+    status = sh_fmu_model.step(instance->model, begin, length, instance->slopes_end == 0, instance);
     if (status > SH_WARNING) {
         return status;
     }

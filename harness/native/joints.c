@@ -31,7 +31,7 @@ void sh_joint_set(sh_joint *joint, unsigned variable, double value)
     }
 }
 
-void sh_joint_default(sh_joint *joint)
+void sh_joint_default(sh_joint *joint, double samplePeriod)
 {
     unsigned i;
 
@@ -39,6 +39,7 @@ void sh_joint_default(sh_joint *joint)
     for (i = 0; i < sizeof VARIABLES / sizeof VARIABLES[0]; ++i) {
         sh_joint_set(joint, i, VARIABLES[i].start);
     }
+    sh_parameters_default_at(&joint->parameters, samplePeriod);
 }
 
 int sh_joint_check(const sh_joint *joint, sh_violation *violation)

@@ -28,8 +28,8 @@ SH_EXPORT size_t sh_joint_size(void);
 /* Place of a variable in sh_joint [bytes]. */
 SH_EXPORT size_t sh_joint_place(unsigned variable);
 
-/* Sets every variable to its start value. */
-SH_EXPORT void sh_joint_default(sh_joint *joint);
+/* Sets every variable to its start value, which may depend on samplePeriod [s]. */
+SH_EXPORT void sh_joint_default(sh_joint *joint, double samplePeriod);
 
 /* Sets a parameter, of any type. */
 SH_EXPORT void sh_joint_set(sh_joint *joint, unsigned variable, double value);

@@ -40,5 +40,5 @@ size_t sh_sample_loop(const sh_call *calls, size_t count, size_t first, size_t e
 
 int sh_native_interface(void)
 {
-    return 3;
+    return 4;
 }

@@ -13,6 +13,7 @@ _STEPS = {
     "document": "documentation.write template out --version",
     "system": "system.write ssp plant estimator --templates --version",
     "release": "cross_compiler.release fmu out --cache",
+    "integers": "integers.write fmu out",
     "distribute": "distribution.write out contents... --project --sources... --includes... --cache",
     "bill": "bill.write out release --version",
     "web": "web.write out plant estimator --page --sources... --includes... --cache",

@@ -33,6 +33,7 @@ class Variable:
     type: str
     size: str  # "[8, 5]" for an array, else ""
     start: str  # start value, "" without a start value
+    at_most: str  # expression that limits the start value until it is set, else ""
     limits: tuple[str, ...]  # modifiers such as "min=0"
     nominal: str
     unit: str
@@ -131,6 +132,7 @@ def _variable(root: Element, variable: Element, types: dict[str, str]) -> Variab
         type=type_name,
         size="[8, 5]" if index else "",
         start="zeros(8, 5)" if index else start,
+        at_most=given.get("at_most", ""),
         limits=tuple(f"{limit}={kind.get(limit)}" for limit in ("min", "max") if kind.get(limit)),
         nominal=kind.get("nominal", "1"),
         unit=kind.get("unit", "1"),

@@ -9,6 +9,8 @@ from sigmahat_build.description_template import render
 
 _LARGEST = {"rls.n": "SH_MAX_N", "rls.m": "SH_MAX_M"}  # sizes that can be given to the compiler
 
+_PERIOD = "1/samplePeriod"  # the only limit of start values that the library knows
+
 
 def write(template: Path, out: Path) -> None:
     """Write ``c/parameters.inc`` from the template of an estimator with one motor.
@@ -19,12 +21,14 @@ def write(template: Path, out: Path) -> None:
     root = render(template, "")
     for variable in variables(root):
         if variable.attrib["causality"] == "parameter" and "[" not in variable.attrib["name"]:
-            macro = "REAL" if variable[0].tag == "Real" else "INTEGER"
-            rows[macro].append(f"    {macro}({', '.join(_row(root, variable))})")
+            kind = "REAL" if variable[0].tag == "Real" else "INTEGER"
+            macro = "RATE" if variable.get("at_most") == _PERIOD else kind
+            rows[kind].append(f"    {macro}({', '.join(_row(root, variable))})")
     reals, integers = map("\n".join, rows.values())
     text = f"""\
 /* Generated from modelDescription/ by the target parameter_table; do not edit.
  * A row: place in sh_parameters, start, least and largest value, range in words.
+ * A RATE starts at most at 1 / samplePeriod.
  */
 static const real_parameter REALS[] = {{
 {reals}

@@ -50,7 +50,8 @@ def write(ssp: Path, plant: Path, estimator: Path, templates: Path, version: str
             ("plant", of_plant, {**table1.plant.start, **torques(table1)}),
             ("estimator", of_estimator, residual.start),
         ):
-            more = {"element": element, "comments": (), "parameters": _parameters(fmu, start)}
+            # One name for both: ecos applies the parameter sets of one name only.
+            more = {"element": "table1", "comments": (), "parameters": _parameters(fmu, start)}
             add(f"resources/{element}.ssv", "parameters.ssv", **more)
         archive.write(ssp, contents)
 

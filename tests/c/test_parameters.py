@@ -79,3 +79,23 @@ def test_every_initial_coefficient_must_be_finite(c: Library, i: int, j: int) ->
     p = c.parameters({})
     p.rls.eta_0[i][j] = math.inf
     assert c.violation(p) == ("rls.eta_0", math.inf, "finite")
+
+
+@pytest.mark.parametrize("period", [1e-9, 1e-4, 1 / 350, 1 / 320, 0.01, 3.0])
+@pytest.mark.parametrize("method", [1, 2])
+def test_the_sample_period_alone_is_enough(period: float, method: int, c: Library) -> None:
+    """Rates start at most at one per sample; no other start value depends on the period."""
+    followed, usual = (c.ffi.new("sh_parameters *") for _ in range(2))
+    c.lib.sh_parameters_default_at(followed, period)
+    c.lib.sh_parameters_default(usual)
+    for name in fields(c, c.ffi.typeof("sh_parameters")):
+        start, value = (attrgetter(name)(p) for p in (usual, followed))
+        if name == "samplePeriod":
+            assert value == pytest.approx(period, rel=1e-6)
+        elif name in ("residual.K_I", "regression.bandwidth"):
+            assert value == pytest.approx(min(start, 1 / period), rel=1e-6)
+        elif name != "rls.eta_0":
+            assert value == start
+    if period > 1e-6:  # with a shorter one, w T is below 1e-4
+        followed.method = method
+        assert c.violation(followed) is None

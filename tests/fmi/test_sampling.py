@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import sigmahat
-from fmi_instance import ERROR, OK, Instance
+from fmi_instance import ERROR, OK, WARNING, Instance, Instance3
 from fmi_runs import ESTIMATORS, FMI2, PLANTS, SIGNALS, Fmi, names
 from sigmahat.fmi.instance import Fmu, Slave
 from sigmahat.fmi.sample_loop import Recorder, SampleLoop, step_times
@@ -147,3 +147,100 @@ def test_parameters_that_contradict_each_other_stop_the_step_until_they_are_corr
             assert ticks(fmu) == 2
             assert fmu.restore(state) == OK
         fmu.free(state)
+
+
+# Held inputs
+
+HELD_INPUTS = 10
+MOVING = {"method": 2, "rls.n": 1, "rls.m": 1, "encoder.theta": 4e6}
+
+
+def warnings(fmu: Instance | Instance3) -> list[str]:
+    return [text for status, _, text in fmu.messages if status == WARNING]
+
+
+def held_step(fmu: Instance | Instance3, t: float, h: float) -> None:
+    """A step with inputs in motion that are set at its begin."""
+    fmu.set_all({name: SIGNALS[name](t) for name in names(fmu, "input")})
+    assert fmu.step(t, h) == OK, fmu.messages
+
+
+@pytest.mark.parametrize("name", ESTIMATORS)
+@pytest.mark.parametrize("method", [1, 2])
+def test_the_first_step_of_several_ticks_with_held_inputs_warns_once(
+    fmi: Fmi, name: str, method: int
+) -> None:
+    """Also if the importer restores a state from before the warning."""
+    with fmi(name).initialise({**MOVING, "method": method}) as fmu:
+        held_step(fmu, 0.0, 1e-3)
+        assert warnings(fmu) == []
+        before = fmu.save()
+        held_step(fmu, 1e-3, 16e-3)
+        held_step(fmu, 17e-3, 16e-3)
+        assert fmu.restore(before) == OK
+        held_step(fmu, 1e-3, 16e-3)
+        (text,) = warnings(fmu)
+        for part in ("0.016 s", "16 ticks", "samplePeriod = 0.001 s", "output_interval"):
+            assert part in text
+        assert "input derivatives (FMI 2.0)" in text
+        fmu.free(before)
+        assert fmu.call("Reset") == OK
+        fmu.initialise({**MOVING, "method": method})
+        held_step(fmu, 0.0, 2e-3)
+        assert len(warnings(fmu)) == 2
+
+
+@pytest.mark.parametrize("name", ESTIMATORS)
+def test_a_step_of_one_tick_or_with_input_derivatives_says_nothing(name: str) -> None:
+    with FMI2(name).initialise(MOVING) as fmu:
+        held_step(fmu, 0.0, 1e-3)
+        held_step(fmu, 1e-3, 4e-4)  # no tick is due in the next one
+        held_step(fmu, 14e-4, 1e-4)
+        assert fmu.set_derivative(names(fmu, "input")[-1], 0.0) == OK  # a value is no question
+        state = fmu.save()
+        held_step(fmu, 15e-4, 20e-3)
+        assert fmu.restore(state) == OK  # the derivative is a part of the state
+        held_step(fmu, 15e-4, 20e-3)
+        assert warnings(fmu) == [] and fmu.get("doubt") != HELD_INPUTS
+        fmu.free(state)
+
+
+@pytest.mark.parametrize(("name", "side"), [(ESTIMATORS[0], ""), (ESTIMATORS[1], "_1")])
+def test_held_inputs_are_a_doubt_until_a_second_of_single_ticks_has_passed(
+    fmi: Fmi, name: str, side: str
+) -> None:
+    start = {**MOVING, "limit.relative_std": 1e12, "regression.memory": 0.0, "modality": SENSOR}
+    with fmi(name).initialise(start) as fmu:
+        outputs = [n for n in names(fmu, "output") if n.partition("_")[0] != "doubt"]
+        for k in range(1000):
+            held_step(fmu, k * 1e-3, 1e-3)
+        assert fmu.get(f"doubt{side}") == 1 and fmu.get(f"confident{side}")
+        for again in (0, 1):  # a second step of two ticks starts the second anew
+            held_step(fmu, 1.0 + again * 0.5, 2e-3)
+            assert fmu.get("doubt") == HELD_INPUTS == fmu.get(f"doubt{side}")
+            assert not fmu.get("confident") and not fmu.get(f"confident{side}")
+            ticks_until = 498 if again == 0 else 999
+            for k in range(ticks_until):
+                held_step(fmu, 1.002 + again * 0.5 + k * 1e-3, 1e-3)
+            assert fmu.get("doubt") == HELD_INPUTS
+        state = fmu.save()
+        held_step(fmu, 2.501, 1e-3)
+        assert fmu.get("doubt") != HELD_INPUTS != fmu.get(f"doubt{side}")
+        assert fmu.get(f"confident{side}")
+        assert fmu.restore(state) == OK and fmu.get("doubt") == HELD_INPUTS
+        fmu.free(state)
+        assert all(map(math.isfinite, fmu.get_all(outputs)))
+
+
+def test_paper2011_keeps_its_numbers_and_its_doubt() -> None:
+    """With held inputs, as with derivatives of 0: only the messages differ."""
+    found = []
+    for told in (False, True):
+        with FMI2().initialise() as fmu:
+            for k in range(50):
+                if told:
+                    assert fmu.set_derivative("tau", 0.0) == OK
+                held_step(fmu, k * 16e-3, 16e-3)
+            found.append(fmu.get_all(names(fmu, "output")))
+            assert fmu.get("doubt") == 2 and len(warnings(fmu)) == (0 if told else 1)
+    assert found[0] == found[1]

@@ -12,7 +12,7 @@ import pytest
 import sigmahat
 from c_library import MEASUREMENTS, Estimator, load
 from fmi_instance import OK, unpacked
-from fmi_runs import ESTIMATORS, FMI2, OTHER_THAN_0, PLANTS, SIGNALS, names
+from fmi_runs import ESTIMATORS, FMI2, OTHER_THAN_0, PLANTS, SIGNALS, Fmi, names
 from regression_joint import WITHOUT_MISFITS
 
 T = 1e-3  # s
@@ -186,3 +186,58 @@ def test_a_plant_continues_from_its_state_with_the_new_value(fmu: str, name: str
     # The internal steps differ, so the error is that of the integrator: its tolerance for one step.
     assert error.max() < 1e-8
     assert effect.max() > 1e-7
+
+
+# Start values that follow another parameter
+
+RATES = {"residual.K_I": 300.0, "regression.bandwidth": 350.0}
+
+
+@pytest.mark.parametrize("name", ESTIMATORS)
+@pytest.mark.parametrize("period", [1e-3, 1 / 320, 0.01, 2.0])
+@pytest.mark.parametrize("method", [1, 2])
+def test_the_sample_period_alone_is_enough(fmi: Fmi, name: str, period: float, method: int) -> None:
+    expected = {rate: min(start, 1 / period) for rate, start in RATES.items()}
+    with fmi(name).initialise({"method": method, "samplePeriod": period}) as fmu:
+        assert {rate: fmu.get(rate) for rate in RATES} == expected
+        assert fmu.step(0.0, period) == OK
+        assert fmu.call("Reset") == OK
+        fmu.initialise()
+        assert {rate: fmu.get(rate) for rate in RATES} == RATES
+
+
+@pytest.mark.parametrize("before", [True, False])
+def test_a_rate_that_was_set_does_not_follow_the_sample_period(fmi: Fmi, before: bool) -> None:
+    """Even if it was set to its start value, and by an importer that restores a state."""
+    set_first = {"residual.K_I": 50.0, "samplePeriod": 0.01}
+    with fmi() as fmu:
+        fmu.set_all(set_first if before else dict(reversed(set_first.items())))
+        state = fmu.save()
+        fmu.set_all({"samplePeriod": 0.02})
+        assert fmu.enter() == OK
+        assert (fmu.get("residual.K_I"), fmu.get("regression.bandwidth")) == (50.0, 50.0)
+        fmu.set_all({"samplePeriod": 0.004})
+        assert (fmu.get("residual.K_I"), fmu.get("regression.bandwidth")) == (50.0, 250.0)
+        assert fmu.restore(state) == OK
+        fmu.set_all({"samplePeriod": 1e-3})
+        assert fmu.enter() == OK
+        assert (fmu.get("residual.K_I"), fmu.get("regression.bandwidth")) == (50.0, 350.0)
+        fmu.free(state)
+    with fmi() as fmu:
+        fmu.set_all({"residual.K_I": 300.0, "samplePeriod": 0.01})
+        assert fmu.enter() == OK and fmu.exit() != OK
+        assert "residual.K_I = 300" in fmu.last_message
+
+
+def test_the_library_and_the_estimator_of_python_have_the_same_rule(build: Path) -> None:
+    library = load(build)
+    for period in (1e-3, 1 / 320, 0.01):
+        p = library.ffi.new("sh_parameters *")
+        library.lib.sh_parameters_default_at(p, period)
+        present = sigmahat.Estimator({"samplePeriod": period}).parameters[0]
+        for rate, start in RATES.items():
+            group, name = rate.split(".")
+            assert getattr(getattr(p, group), name) == present[rate] == min(start, 1 / period)
+        assert library.violation(p) is None
+    own = {"samplePeriod": 0.01, "regression.bandwidth": 120.0}
+    assert sigmahat.Estimator(own).parameters[0]["regression.bandwidth"] == 120.0

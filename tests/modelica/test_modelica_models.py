@@ -159,6 +159,26 @@ def test_the_device_is_the_sum_of_its_sides(
     assert (last["doubt"], last["confident"], last["valid"]) == (doubt, doubt == NONE, True)
 
 
+@pytest.mark.parametrize(
+    ("changed", "expected"),
+    [
+        ("", (300.0, 350.0)),
+        ("samplePeriod=0.01", (100.0, 100.0)),
+        ("samplePeriod=0.01, regression(bandwidth=77)", (100.0, 77.0)),
+        ("residual(K_I=20), samplePeriod=0.01", (20.0, 100.0)),
+    ],
+)
+def test_rates_follow_the_sample_period_until_they_are_set(
+    changed: str, expected: tuple[float, float]
+) -> None:
+    text = (
+        f"model Test extends Sigmahat.Estimators.Settings({changed}); Real K_I, w; "
+        "equation K_I = residual.K_I; w = regression.bandwidth; end Test;"
+    )
+    found = compiled(text).simulate(t=(0.0, 0.01), dt=1e-2)
+    assert (found["K_I"][-1], found["w"][-1]) == expected
+
+
 # The Modelica plants have the same outputs as the FMUs of the plants
 
 AGREEMENT = 1e-6

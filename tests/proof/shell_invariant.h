@@ -21,6 +21,9 @@ void expect_sound(const MODEL *model);
 /*@ requires \valid(instance) && \valid_read(format);
     assigns \nothing; */
 void sh_report(sh_instance *instance, sh_status status, const char *format, ...);
+/*@ requires \valid(instance) && \valid_read(format);
+    assigns instance->warned; */
+void sh_warn_once(sh_instance *instance, const char *format, ...);
 
 /* Where a simulation stands. */
 typedef struct {
@@ -54,7 +57,7 @@ static int is_initialized(sh_state state, int outputs_stale)
 static void *with_course(char *block, unsigned state, int outputs_stale)
 {
     enum { PLACE_OF_STATE = 12, PLACE_OF_FLAG = 112 };
-    const uint64_t flag = (uint64_t)outputs_stale;
+    const uint32_t flag = (uint32_t)outputs_stale;
 
     (void)memcpy(block + PLACE_OF_STATE, &state, sizeof state);
     (void)memcpy(block + PLACE_OF_FLAG, &flag, sizeof flag);
@@ -85,6 +88,7 @@ static void any_instance(course here, sh_importer importer)
     if (instance.slopes_end > sh_fmu_model.count) {
         instance.slopes_end = sh_fmu_model.count;
     }
+    instance.warned = any_choice();
     instance.model = &model;
 }
 

@@ -19,6 +19,12 @@ int sh_parameters_check(const sh_parameters *p, sh_violation *violation)
     return 1;
 }
 
+void sh_parameters_default_at(sh_parameters *p, sh_real samplePeriod)
+{
+    (void)samplePeriod;
+    Frama_C_make_unknown((char *)p, sizeof *p);
+}
+
 /* Eva uses the results of a function again where all is the same that its code reads, and an assertion is
  * no code. So these compare in C.
  */

@@ -84,7 +84,7 @@ class Estimator:
         self._record = tuple(record)
         for name in self._record:
             self._joints.model.variable(name, "output")
-        self.parameters = [self._joints.model.parameters(each) for each in given]
+        self.parameters = [self._joints.parameters(joint) for joint in range(len(given))]
         """All present parameters of each joint: given values, else values of the FMU."""
         self._tick: Callable[[Sequence[ArrayLike | None]], dict[str, Any]] | None = None
         self._may_warn = warn_of_range

@@ -33,6 +33,16 @@ class Output(ctypes.Structure):
     _fields_ = (("variable", ctypes.c_uint), ("values", ctypes.c_void_p))
 
 
+def start_values(samplePeriod: float) -> dict[str, Value]:
+    """Returns all parameters of an estimator of which only samplePeriod [s] is set.
+
+    Start values that depend on it follow it. The period may be out of its range.
+    """
+    joint = Joints([{}])
+    joint.set_start_values(0, samplePeriod)
+    return joint.parameters(0)
+
+
 class Joints:
     """One estimator per joint, in the order of the parameters."""
 
@@ -46,7 +56,8 @@ class Joints:
         self.stride = -(-size // _CACHE_LINE) * _CACHE_LINE
         self.memory = np.zeros((len(parameters), self.stride), np.uint8)
         for joint, each in enumerate(parameters):
-            self._library.sh_joint_default(self._address(joint))
+            period = each.get("samplePeriod", float(self.model.variable("samplePeriod").start))
+            self.set_start_values(joint, self.model.number("samplePeriod", period))
             self.set(joint, each)
         self.start()
 
@@ -58,6 +69,10 @@ class Joints:
         """Forgets all that was learned."""
         for joint in range(len(self.memory)):
             self._library.sh_joint_start(self._address(joint))
+
+    def set_start_values(self, joint: int, samplePeriod: float) -> None:
+        """Sets all variables of a joint to their start values for samplePeriod [s]."""
+        self._library.sh_joint_default(self._address(joint), samplePeriod)
 
     def set(self, joint: int, parameters: Mapping[str, Value]) -> None:
         """Sets parameters of a joint: all, or none if one of them does not fit (ValueError)."""

@@ -12,14 +12,14 @@ import fmpy
 from sigmahat.fmi.installed import folder
 from sigmahat.fmi.model import FmuError
 
-_INTERFACE = 3  # as in harness/native/sample_loop.c
+_INTERFACE = 4  # as in harness/native/sample_loop.c
 _POINTER, _SIZE, _NUMBER = ctypes.c_void_p, ctypes.c_size_t, ctypes.c_uint
 _FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "sh_sample_loop": (_SIZE, [_POINTER, *[_SIZE] * 3]),
     "sh_joint_guid": (ctypes.c_char_p, []),
     "sh_joint_size": (_SIZE, []),
     "sh_joint_place": (_SIZE, [_NUMBER]),
-    "sh_joint_default": (None, [_POINTER]),
+    "sh_joint_default": (None, [_POINTER, ctypes.c_double]),
     "sh_joint_set": (None, [_POINTER, _NUMBER, ctypes.c_double]),
     "sh_joint_check": (ctypes.c_int, [_POINTER, _POINTER]),
     "sh_joint_start": (None, [_POINTER]),

@@ -1,10 +1,11 @@
 """The model description of an FMU in the form of FMI 2.0: variables, and what follows from them.
 
-A description is incomplete at first: it has the variables with their data. Two attributes of the
+A description is incomplete at first: it has the variables with their data. Three attributes of the
 variables do not belong to FMI: ``depends`` of an output names the variables on which its initial
 value depends, for the model structure. ``array`` of a first element describes its array, for
-Modelica. `complete` adds value references, display units, the model structure and the GUID, and
-removes these attributes and the units that no variable has.
+Modelica. ``at_most`` of a parameter is the expression that limits its start value until it is
+set, for C and Modelica. `complete` adds value references, display units, the model structure and
+the GUID, and removes these attributes and the units that no variable has.
 """
 
 import hashlib
@@ -74,6 +75,7 @@ def complete(root: Element) -> str:
     for reference, variable in enumerate(variables(root)):
         variable.set("valueReference", str(reference))
         variable.attrib.pop("array", None)
+        variable.attrib.pop("at_most", None)
     _complete_units(root)
     _add_model_structure(root)
     ElementTree.indent(root)

@@ -2,19 +2,19 @@
 
 import math
 
+from sigmahat.estimator.instances import start_values
 from sigmahat.fmi.model import Value, installed_model
 from sigmahat.recording.configuration import Configuration
 from sigmahat.recording.log import LogError
 from sigmahat.recording.units import counts_per_turn
 
-_RATES = ("regression.bandwidth", "residual.K_I")  # [1/s], below 2 / samplePeriod
-
 
 def parameters(configuration: Configuration) -> dict[str, Value]:
     """Computes the parameters that differ from the start values of StiffnessEstimator.fmu.
 
-    They are the configured parameters, and the counts of the encoders. Filters are not faster than
-    the samples. If motor.gamma is 0 or missing, the gear ratio of theta is used.
+    They are the configured parameters, the counts of the encoders, and start values that follow
+    samplePeriod: filters are not faster than the samples. If motor.gamma is 0 or missing, the gear
+    ratio of theta is used.
 
     encoder.theta_c has no effect, but is set because the interface of the FMU contains it.
 
@@ -37,12 +37,12 @@ def parameters(configuration: Configuration) -> dict[str, Value]:
                 raise ValueError(f"parameters.{name}: expected a finite number, got {value}")
         if start.get("motor.gamma") == 0:
             raise ValueError("parameters.motor.gamma is 0; fill in the gear ratio of your joint")
-        present = model.parameters(start)
-        T = float(present["samplePeriod"])
+        unset = model.parameters({})
+        T = float(start.get("samplePeriod", unset["samplePeriod"]))
         if T == 0:
             raise ValueError("parameters.samplePeriod is 0; fill in the time between two rows [s]")
-        too_fast = {name: 1 / T for name in _RATES if float(present[name]) * T > 1}
-        return {**too_fast, **start}
+        follow = {name: v for name, v in start_values(T).items() if v != unset[name]}
+        return {**follow, **start}
     except (ValueError, TypeError) as error:
         raise LogError(f"{configuration.path}: {error}") from error
 

@@ -22,11 +22,14 @@ static sh_violation violation;
 /* The parameters that `refused` leaves. */
 void in_range(void)
 {
+    sh_real period;
+
     any_parameters(&p);
     if (sh_parameters_check(&p, &violation) == 0) {
         sh_parameters_largest_deformation(&p);
     }
-    sh_parameters_default(&p);
+    ANYTHING(period);
+    sh_parameters_default_at(&p, period);
     //@ assert reached: \true;
 }
 
