@@ -2,6 +2,7 @@
 `sigmahat live`, which receives them."""
 
 import json
+import math
 import signal
 import socket
 import subprocess
@@ -49,8 +50,13 @@ prior.tau_e = 30
 """
 
 
-def messages(samples: int, seed: int = 1) -> list[dict[str, float | int]]:
-    """Samples of a joint with 400 N.m/rad that moves a load, T apart."""
+def messages(
+    samples: int, seed: int = 1, changed: tuple[float, float] = (math.inf, 1.0)
+) -> list[dict[str, float | int]]:
+    """Samples of a joint with 400 N.m/rad that moves a load, T apart.
+
+    changed  time of a change of the stiffness [s], and the factor
+    """
     noise = np.random.default_rng(seed)
     t = T * np.arange(samples)
     theta = 0.8 * np.sin(3 * t) + 0.2 * np.sin(11 * t)
@@ -58,7 +64,8 @@ def messages(samples: int, seed: int = 1) -> list[dict[str, float | int]]:
     counts = np.round(theta * GEAR * COUNTS / (2 * np.pi)) % COUNTS
     speed = 2.4 * np.cos(3 * t) + 2.2 * np.cos(11 * t)
     acceleration = -7.2 * np.sin(3 * t) - 24.2 * np.sin(11 * t)
-    torque = GEAR * (1e-3 * acceleration + 1e-2 * speed) + 400 * (theta - q) / GEAR
+    stiffness = np.where(t < changed[0], 400.0, 400.0 * changed[1])
+    torque = GEAR * (1e-3 * acceleration + 1e-2 * speed) + stiffness * (theta - q) / GEAR
     torque += noise.normal(0, 3e-3, samples)
     names = ("t", "arm/motor", "arm/link[0]", "arm/torque")
     rows = np.column_stack([t, counts, 2.5 - np.degrees(q), torque]).tolist()
@@ -72,15 +79,24 @@ class Viewer:
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._socket.bind(("127.0.0.1", 0))
         self.port = int(self._socket.getsockname()[1])
-        self.received: SimpleQueue[bytes] = SimpleQueue()
+        self.received: SimpleQueue[Any] = SimpleQueue()  # estimates of ticks
+        self.silent: SimpleQueue[Any] = SimpleQueue()  # messages of joints without data
+        self.events: SimpleQueue[Any] = SimpleQueue()
         Thread(target=self._receive, daemon=True).start()
 
     def _receive(self) -> None:
         while True:
-            self.received.put(self._socket.recv(65536))
+            message = json.loads(self._socket.recv(65536))
+            joints = [each for each in message.values() if isinstance(each, dict)]
+            if "event" in message:
+                self.events.put(message["event"])
+            elif any(each.get("doubt") == "NoData" for each in joints):
+                self.silent.put(message)
+            else:
+                self.received.put(message)
 
     def next(self) -> Any:
-        return json.loads(self.received.get(timeout=10))
+        return self.received.get(timeout=10)
 
 
 def free_port() -> int:

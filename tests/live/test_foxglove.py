@@ -33,7 +33,7 @@ class Client:
             address, timeout=10, subprotocols=["foxglove.sdk.v1"]
         )
         self.channels: dict[str, Any] = {}
-        while len(self.channels) < 2:
+        while len(self.channels) < 3:
             message = json.loads(self.socket.recv())
             self.channels |= {each["topic"]: each for each in message.get("channels", [])}
 
@@ -55,7 +55,7 @@ def test_a_client_receives_channels_and_samples(tmp_path: Path) -> None:
     port = free_port()
     with replayed(tmp_path, 4000, port) as process:
         client = Client(port)
-        assert sorted(client.channels) == ["/elbow/estimate", "/wrist/estimate"]
+        assert sorted(client.channels) == ["/elbow/estimate", "/sigmahat/events", "/wrist/estimate"]
         channel = client.channels["/wrist/estimate"]
         assert (channel["encoding"], channel["schemaEncoding"]) == ("json", "jsonschema")
         properties = json.loads(channel["schema"])["properties"]

@@ -15,8 +15,13 @@ import pytest
 
 from command_line import Shell
 from sender import CONFIGURATION, Viewer, csv, ended, estimated, free_port, messages, running
+from sigmahat.live.endpoints import Endpoints
+from sigmahat.live.live_joint import Estimated
+from sigmahat.live.loop import Inbox
 from sigmahat.live.session import Session
 from sigmahat.recording.readers.formats import open_log
+
+NO_DATA = "no data for X s; does the sender run?"
 
 needs_signals = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT")
 
@@ -25,6 +30,11 @@ def nested(message: dict[str, Any]) -> bytes:
     motor, link, torque = (message[f"arm/{name}"] for name in ("motor", "link[0]", "torque"))
     arm = {"motor": motor, "link": [link], "torque": torque}
     return json.dumps({"t": message["t"], "arm": arm}).encode()
+
+
+def untimed(text: str) -> str:
+    """A text without its durations, which are not exact in real time."""
+    return re.sub(r"\b[\d.]+ s\b", "X s", text)
 
 
 def recorded(folder: Path) -> Path:
@@ -72,7 +82,8 @@ def test_datagrams_in_and_out_and_any_others_between_them(tmp_path: Path) -> Non
     assert [each["joint"]["doubt"] for each in received] == series["doubt"].tolist()
     found = [each["joint"]["sigma"] for each in received]
     session = Session(tmp_path / "arm.toml", tmp_path)
-    ticks = [tick for each in alone for tick in session.take(each, 0)] + session.close()
+    news = [new for each in alone for new in session.take(each, 0)] + session.close()
+    ticks = [each for each in news if isinstance(each, Estimated)]
     assert found == series["sigma"].tolist() == [tick.outputs["sigma"] for tick in ticks]
 
 
@@ -118,6 +129,60 @@ def test_a_replayed_log_takes_its_time(tmp_path: Path) -> None:
     assert took > 0.9 * 1.8
     log.with_suffix(".toml").write_text(CONFIGURATION)
     assert [each["joint"]["sigma"] for each in received] == estimated(log)["sigma"].tolist()
+
+
+@needs_signals
+def test_a_sender_that_dies_is_said_by_the_terminal_and_the_sink(tmp_path: Path) -> None:
+    port, viewer = free_port(), Viewer()
+    with running(tmp_path, "--from", f"udp:{port}", "--to", f"udp:{viewer.port}") as process:
+        send(port, [nested(each) for each in messages(1000)])
+        while viewer.next()["timestamp"] < 999 * 0.002 - 1e-6:
+            pass
+        silent = [viewer.silent.get(timeout=10) for _ in range(4)]
+        event = viewer.events.get(timeout=10)
+        _, err = ended(process)
+    for each in silent:
+        joint = each["joint"]
+        assert (joint["confident"], joint["doubt"]) == (False, "NoData")
+        assert each["timestamp"] == pytest.approx(1.998 + joint["data_age"], abs=0.5)
+    assert silent[-1]["joint"]["data_age"] > 1.5
+    assert (event["kind"], untimed(event["text"])) == ("no_data", NO_DATA)
+    assert untimed(err).count(NO_DATA) == 1
+
+
+def test_a_replay_says_what_a_stream_would(tmp_path: Path) -> None:
+    """The field is lost for 0.8 s, then all data are for 0.7 s."""
+    sent = messages(2500)
+    for each in sent[500:900]:
+        each["arm/link[0]"] = float("nan")
+    (tmp_path / "arm.csv").write_text("\n".join(csv([*sent[:1500], *sent[1850:]])) + "\n")
+    viewer = Viewer()
+    with running(tmp_path, "--replay", "arm.csv", "--to", f"udp:{viewer.port}") as process:
+        _, err = process.communicate(timeout=60)
+    lines = untimed(err).splitlines()
+    expected = [
+        "no 'arm/link[0]' for X s, while messages arrive",
+        "'arm/link[0]' again",
+        NO_DATA,
+        "data again, after X s without",
+    ]
+    assert [each for each in lines if each in expected] == expected
+    events = [viewer.events.get(timeout=10)["text"] for _ in expected]
+    assert list(map(untimed, events)) == expected
+    assert not viewer.silent.empty()
+
+
+def test_a_source_that_fails_ends_the_command_with_its_reason(
+    shell: Shell, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def no_handles(inbox: Inbox) -> None:
+        raise OSError(24, "Too many open files")
+
+    Path("arm.toml").write_text(CONFIGURATION)
+    monkeypatch.setattr(Endpoints, "source", lambda *_: no_handles)
+    shell.run("live arm.toml --out out --from tcp:9", status=2)
+    expected = "the messages from tcp:9 have ended: [Errno 24] Too many open files"
+    assert shell.err.splitlines()[-1] == f"sigmahat: error: {expected}"
 
 
 @pytest.mark.parametrize(

@@ -85,12 +85,17 @@ def test_joint_states_in_and_estimates_out(
         lines[kind].append(rest.split())
     assert any(" ".join(each).startswith("0 sigmahat: stiffness of joint: confident") or
                each[0] == "1" for each in lines["diagnosis"])  # fmt: skip
+    assert any(" ".join(each).startswith("3 sigmahat: stiffness of joint: no data for")
+               for each in lines["diagnosis"])  # fmt: skip
+    ages = [float(each[each.index("data_age") + 1]) for each in lines["estimate"]]
+    with_data = [each for each, age in zip(lines["estimate"], ages, strict=True) if age == 0]
+    assert len(with_data) < len(ages)
     (recording,) = (tmp_path / "out").glob("*.parquet")
     found = estimated(recording)
     ticks = len(found.t)
     assert ticks == 1500 and "messages: 1500 read" in printed
-    stamps = [int(each[0]) for each in lines["estimate"]]
+    stamps = [int(each[0]) for each in with_data]
     np.testing.assert_allclose(np.array(stamps) - FIRST, 1e9 * found.t, atol=2)
     for name, output in (("stiffness", "sigma"), ("torque_std", "tau_e_std")):
-        values = [float(each[each.index(name) + 1]) for each in lines["estimate"]]
+        values = [float(each[each.index(name) + 1]) for each in with_data]
         assert values == found[output].tolist()

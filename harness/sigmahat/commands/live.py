@@ -67,8 +67,9 @@ def live(
     """
     from sigmahat.files.output import created_folder
     from sigmahat.live.endpoints import Endpoints
-    from sigmahat.live.loop import Inbox, terminal, watch
+    from sigmahat.live.loop import Inbox, receive, watch
     from sigmahat.live.session import Session
+    from sigmahat.live.terminal import terminal
 
     common.need_fmus("StiffnessEstimator")
     with common.errors_in_one_line(out), created_folder(out):
@@ -77,11 +78,11 @@ def live(
         titles = columns.split(",") if columns else []
         opened = ends.source(source, titles) if replay is None else ends.replay(replay)
         sinks = [ends.sink(each) for each in targets]
+        name = source if replay is None else f"the log {replay}"
         if not common.is_quiet():
-            name = source if replay is None else f"the log {replay}"
             click.echo(common.printable(_greeting(session, name, targets, host)), err=True)
             sinks.append(terminal())
-        Thread(target=opened, args=[inbox], daemon=True).start()
+        Thread(target=receive, args=[opened, inbox], daemon=True).start()
         watch(session, inbox, sinks)
     values = _counts(session, inbox)
     counts = [f"{count} {what}" for what, count in values.items() if count or what == "read"]
@@ -90,6 +91,8 @@ def live(
     lines = [f"messages: {', '.join(counts)}", learned if files else "Nothing was recorded"]
     lines += [f"sigmahat estimate {each} --config {each.with_suffix('.toml')}" for each in files]
     common.answer("\n".join(lines), {"messages": values, "recordings": [str(f) for f in files]})
+    if inbox.failure is not None:
+        raise click.ClickException(f"the messages from {name} have ended: {inbox.failure}")
     if not inbox.read and inbox.wrong:
         expected = f"JSON, or CSV with the columns {', '.join(session.columns)}"
         raise click.ClickException(

@@ -63,6 +63,16 @@ class Clock:
         """Whether the last samples show that the sender has started again."""
         return self._in_order >= _STARTED
 
+    @property
+    def newest(self) -> float:
+        """Time of the last sample far off, as the sender counts it [s]."""
+        return self._stray + (self.shift or 0) * self.seconds
+
+    @property
+    def jump(self) -> float:
+        """From the last sample in order to the last one far off [s]."""
+        return self._stray - self.now
+
     def give_up(self, t: float) -> None:
         """Leaves out later samples whose time is not after t [s]."""
         self._floor = max(self._floor, t)

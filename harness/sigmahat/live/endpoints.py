@@ -17,7 +17,8 @@ from typing import TYPE_CHECKING, BinaryIO
 
 import numpy as np
 
-from sigmahat.live.live_joint import Estimated
+from sigmahat.live.events import Event
+from sigmahat.live.live_joint import Estimated, News
 from sigmahat.live.loop import Inbox, Sink, Source
 from sigmahat.live.messages import LONGEST, Columns, Decoder
 from sigmahat.live.session import Session
@@ -79,7 +80,6 @@ class Endpoints:
                 first = t if first is None else first
                 time.sleep(max(begin + t - first - time.monotonic(), 0.0))
                 inbox.add(partial(dict, columns), arrival=round(1e9 * t))
-            inbox.add(_no_more)
 
         return read
 
@@ -155,11 +155,6 @@ def _tcp(address: _Address, decoders: _Decoders) -> Source:
 
 def _read_stdin(decoders: _Decoders, inbox: Inbox) -> None:
     _lines(sys.stdin.buffer, inbox, decoders())
-    inbox.add(_no_more)
-
-
-def _no_more() -> None:
-    raise EOFError
 
 
 def _lines(file: BinaryIO, inbox: Inbox, decoder: Decoder) -> None:
@@ -191,14 +186,19 @@ def _rows(
 def _send_udp(address: _Address) -> Sink:
     """Creates a sink of UDP datagrams for PlotJuggler: {"timestamp": t, "elbow": {...}}.
 
-    A missing receiver is no error.
+    An event is a datagram of its own: {"timestamp": t, "event": {...}}. A missing receiver is no
+    error.
     """
     sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     sender.setblocking(False)
 
-    def send(ticks: Sequence[Estimated]) -> None:
+    def send(news: Sequence[News]) -> None:
+        events = [each for each in news if isinstance(each, Event)]
+        ticks = [each for each in news if isinstance(each, Estimated)]
+        messages = [{"timestamp": each.t, "event": each.shown()} for each in events]
         for t, at_once in groupby(ticks, key=lambda each: each.t):
-            message = {"timestamp": t} | {each.joint: each.shown() for each in at_once}
+            messages.append({"timestamp": t} | {each.joint: each.shown() for each in at_once})
+        for message in messages:
             with suppress(OSError):
                 sender.sendto(json.dumps(message).encode(), address)
 

@@ -6,17 +6,20 @@ The values at the ticks come from recording/resampling.py and recording/counters
 import math
 from collections import deque
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from sigmahat.files.output import finite
+from sigmahat.live.changes import ChangesOnLine
 from sigmahat.live.clock import Clock
+from sigmahat.live.events import Event, in_seconds
 from sigmahat.live.messages import Columns
 from sigmahat.recording.configuration import PORTS, Configuration
 from sigmahat.recording.counters import WholePeriods
+from sigmahat.recording.estimator_parameters import all_parameters
 from sigmahat.recording.log import LogError
 from sigmahat.recording.replay import estimator_for
 from sigmahat.recording.resampling import AT_TICK, PortSamples, usual_gap, with_tolerance
@@ -29,6 +32,7 @@ OUTPUTS = ("sigma", "sigma_std", "tau_e", "tau_e_std", "phi", "setPoint", "misfi
 """Real outputs that are sent to the sinks."""
 _FLAGS = ("confident", "valid")
 GIVEN = (*OUTPUTS, *_FLAGS, "doubt")  # all outputs that are sent to the sinks
+NO_DATA = "NoData"  # value of doubt while a joint has no data; the estimator has no such item
 BANDED = ("sigma", "tau_e")  # outputs whose 95 % intervals are sent, too: sigma_low, ...
 _PATIENCE = 0.2  # [s] a tick waits for a port without samples while other ports have some
 _WAITING, _MOST = 1000, 10_000  # most samples that wait for the first time, for slower ports
@@ -39,15 +43,35 @@ class Estimated:
     joint: str  # liveJoint.name
     t: float  # time of the tick, as the sender counts it [s]
     outputs: Mapping[str, Any]  # values of the outputs GIVEN
+    data_age: float = 0.0  # [s] since the last tick with data, if the joint is silent, else 0
+
+    def without_data(self, t: float, age: float) -> "Estimated":
+        """Returns this estimate for a later time t [s], age seconds after the last data.
+
+        What was learned stays, but nobody knows whether it is still true.
+        """
+        outputs = {**self.outputs, "confident": False, "valid": False, "doubt": NO_DATA}
+        return replace(self, t=t, outputs=outputs, data_age=age)
+
+    @property
+    def in_words(self) -> str:
+        """Whether the estimate can be trusted, and why not."""
+        doubt = self.outputs["doubt"]
+        if doubt == NO_DATA:
+            return f"no data for {in_seconds(self.data_age)}"
+        return "confident" if doubt == "None" else f"not confident ({doubt})"
 
     def shown(self) -> dict[str, Any]:
         """Returns outputs and intervals for JSON, which has no nan and no infinity."""
-        values = dict(self.outputs)
+        values = {**self.outputs, "data_age": self.data_age}
         for name in BANDED:
             half = NORMAL_95 * values[f"{name}_std"]
             values[f"{name}_low"], values[f"{name}_high"] = values[name] - half, values[name] + half
         found: dict[str, Any] = finite(values)
         return found
+
+
+News = Estimated | Event  # what the sinks are told
 
 
 class LiveJoint:
@@ -62,10 +86,11 @@ class LiveJoint:
         """
         self.configuration, ports = configuration, configuration.ports
         self.name = configuration.joint or "joint"  # name for people and topics
-        self._estimator = estimator_for(configuration, ("a", *GIVEN))
-        (parameters,) = self._estimator.parameters
-        configuration.need_ports(str(parameters["modality"]))
+        parameters = all_parameters(configuration)
         self.T = float(parameters["samplePeriod"])
+        self._changes = ChangesOnLine(self.name, parameters, self.T)
+        self._estimator = estimator_for(configuration, ("a", *GIVEN, *self._changes.names))
+        configuration.need_ports(str(parameters["modality"]))
         self.longest_gap = configuration.time.longest_gap or usual_gap(self.T)
         """Longest gap over which values are interpolated [s]."""
         self.ports = {
@@ -95,8 +120,15 @@ class LiveJoint:
         for port in self.ports.values():
             port.restart()
 
-    def take(self, columns: Columns, times: Mapping[str, float]) -> Iterator[Estimated]:
-        """Yields the estimates at all ticks that a new message allows to compute.
+    @property
+    def columns(self) -> list[str]:
+        """Columns of the messages that this joint uses, with those of the times; "" for arrival."""
+        times = [self.time_column(each) for each in ("", *self.ports)]
+        values = [each.port.column for each in self.ports.values() if each.port.column]
+        return list(dict.fromkeys([*times, *values]))
+
+    def take(self, columns: Columns, times: Mapping[str, float]) -> Iterator[News]:
+        """Yields estimates and events at all ticks that a new message allows to compute.
 
         times  values of the time columns in the message [s]
         """
@@ -118,8 +150,8 @@ class LiveJoint:
         own = self.ports[port].port.time if port else None
         return own or self.configuration.time.column or ""
 
-    def end(self, recording: Path, digest: str, learned: Path) -> Iterator[Estimated]:
-        """Yields the last estimates of a recording, and writes the state of the estimator.
+    def end(self, recording: Path, digest: str, learned: Path) -> Iterator[News]:
+        """Yields the last news of a recording, and writes the state of the estimator.
 
         recording, digest  recorded file and its SHA-256; learned  file for the state
         """
@@ -135,7 +167,7 @@ class LiveJoint:
         """Continues after the end of a recording; filters start again with the next sample."""
         self._estimator.restart_filters()
 
-    def _run(self, start: float, is_end: bool) -> Iterator[Estimated]:
+    def _run(self, start: float, is_end: bool) -> Iterator[News]:
         clock = self._clocks[self.time_column("")]
         newest = max(self._clocks[self.time_column(each)].now for each in self.ports)
         while self._ticks <= (clock.now - start) / self.T + AT_TICK:
@@ -150,9 +182,9 @@ class LiveJoint:
                     self._clocks[self.time_column(name)].give_up(at_tick + AT_TICK * self.T)
                     value = math.nan
                 self._values[place] = value
-            yield self._tick(start + (clock.shift or 0) * clock.seconds)
+            yield from self._tick(start + (clock.shift or 0) * clock.seconds)
 
-    def _tick(self, start: float) -> Estimated:
+    def _tick(self, start: float) -> Iterator[News]:
         if self._whole_periods is not None:
             self._whole_periods.put_right_one(self._values)
         values = dict(zip(self.ports, self._values.tolist(), strict=True))
@@ -160,8 +192,10 @@ class LiveJoint:
         t = start + self.T * self._ticks
         self._ticks += 1
         self._skipped += not outputs["valid"]
-        if outputs.pop("a") > 0 and outputs["valid"]:
+        if outputs["a"] > 0 and outputs["valid"]:
             for name, used in self._used.items():
                 low, high = used or (math.inf, -math.inf)
                 self._used[name] = min(low, outputs[name]), max(high, outputs[name])
-        return Estimated(self.name, t, outputs)
+        yield Estimated(self.name, t, {name: outputs[name] for name in GIVEN})
+        if (change := self._changes.add(t, outputs)) is not None:
+            yield change

@@ -1,144 +1,145 @@
-"""Runs the on-line loop: passes messages to the session, and estimates to the sinks."""
+"""Runs the on-line loop: passes messages to the session, and what it finds to the sinks."""
 
-import logging
-import shutil
 import signal
-import sys
 import time
-from collections.abc import Callable, Sequence, Set
+from collections.abc import Callable, Sequence
+from functools import partial
 from queue import Empty, Full, Queue
+from typing import NamedTuple
 
-import click
-
-from sigmahat.files.tables import aligned
 from sigmahat.fmi.interrupts import handling
-from sigmahat.live.live_joint import Estimated
+from sigmahat.live.events import Event, SamplesApart, Unreadable
+from sigmahat.live.live_joint import News
 from sigmahat.live.messages import Columns
 from sigmahat.live.session import Session
-from sigmahat.result.curve import NORMAL_95
+from sigmahat.live.silence import Silence
 
-_log = logging.getLogger("sigmahat")
 _IDLE = 0.1  # [s] until a signal is seen
-_SILENT = 5.0  # [s] without a message until a warning
-_FIRST = 100  # number of messages until warnings about these messages
+_FIRST = 100  # number of messages until their times are looked at
 _MOST = 20_000  # messages that wait
-_EVERY, _RARELY = 0.5, 10.0  # [s] between two updates in a terminal, and in other outputs
 
 Reader = Callable[[], Columns | None]
 """Gives the columns of a message; None for a message without columns. Raises ValueError if the
 message is not readable, and EOFError after the last message."""
-Sink = Callable[[Sequence[Estimated]], None]  # sends the ticks of one message on
+Sink = Callable[[Sequence[News]], None]  # sends on what is new: estimates and events
 
 
-class Inbox(Queue[tuple[int, Reader]]):
-    """Queue of received messages, each with its time of arrival [ns] since 1970."""
+class Message(NamedTuple):
+    arrival: int  # [ns] since 1970; of a replayed log, the time in the log
+    received: float  # by the clock that never jumps [s]
+    read: Reader
 
-    def __init__(self) -> None:
+
+class Inbox(Queue[Message]):
+    """Queue of received messages."""
+
+    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        """clock  gives the time of this computer [s], which never jumps"""
         super().__init__(_MOST)
+        self.now = clock
         self.read = self.wrong = self.dropped = 0
         """Numbers of messages: read, not readable, and lost because the inbox was full."""
+        self.failure: Exception | None = None  # why the source has ended before its data did
 
     def add(self, read: Reader, can_wait: bool = True, arrival: int | None = None) -> None:
         """can_wait  whether the sender waits for a place; else the message may be lost"""
+        arrival = time.time_ns() if arrival is None else arrival
         try:
-            self.put((time.time_ns() if arrival is None else arrival, read), can_wait)
+            self.put(Message(arrival, self.now(), read), can_wait)
         except Full:
             self.dropped += 1
+
+    def end(self, failure: Exception | None = None) -> None:
+        """Ends the loop, after the messages that wait."""
+        self.add(partial(self._ended, failure))
+
+    def _ended(self, failure: Exception | None) -> None:
+        self.failure = failure
+        raise EOFError
 
 
 Source = Callable[[Inbox], None]
 """Puts messages into the inbox until the data end; UDP, TCP and ROS 2 do not end."""
 
 
+def receive(source: Source, inbox: Inbox) -> None:
+    """Runs a source, in a thread of its own. The loop ends when the source ends, or fails."""
+    try:
+        source(inbox)
+    except Exception as error:  # of a library; a thread that dies in silence helps nobody
+        inbox.end(error)
+    else:
+        inbox.end()
+
+
+class Loop:
+    """Takes messages one after the other, and tells all sinks what is new."""
+
+    def __init__(self, session: Session, inbox: Inbox, sinks: Sequence[Sink]) -> None:
+        self._session, self._inbox, self._sinks = session, inbox, sinks
+        self._silence = Silence(session.joints, session.columns, inbox.now())
+
+    def take(self, message: Message) -> None:
+        """Takes the next message. Raises EOFError after the last one."""
+        try:
+            columns = message.read()
+        except ValueError as error:
+            self._inbox.wrong += 1
+            if self._inbox.wrong == 1:
+                t = self._silence.time(message.received)
+                self._tell([Unreadable(t=t, reason=str(error))])
+            return
+        self._inbox.read += 1
+        if columns is None:
+            return
+        now = message.received
+        passed = self._silence.passed(now)
+        of_fields = self._silence.message(columns, now)
+        found = self._session.take(columns, message.arrival)
+        told = [*passed, *of_fields, *self._silence.news(found, now)]
+        if self._inbox.read == _FIRST:
+            told += self._samples_apart(now)
+        self._tell(told)
+
+    def wait(self) -> None:
+        """Says what is to be said if no message waits."""
+        self._tell(self._silence.passed(self._inbox.now()))
+
+    def end(self) -> None:
+        self._tell(self._session.close())
+
+    def _tell(self, news: Sequence[News]) -> None:
+        if news:
+            for send in self._sinks:
+                send(news)
+
+    def _samples_apart(self, now: float) -> list[Event]:
+        """Returns the first joint whose samples are too far apart."""
+        for joint in self._session.joints:
+            usual = self._session.clocks[joint.time_column("")].usual
+            if usual > joint.longest_gap:
+                t, gap = self._silence.time(now), joint.longest_gap
+                return [SamplesApart(t=t, joint=joint.name, interval=usual, longest_gap=gap)]
+        return []
+
+
 def watch(session: Session, inbox: Inbox, sinks: Sequence[Sink]) -> None:
     """Runs the estimators until the last message, or until Ctrl-C or SIGTERM.
 
-    A warning shows the first message that cannot be read; all such messages are counted.
+    An event shows the first message that cannot be read; all such messages are counted.
     """
-    seen = set[str]()
-    silent_at = time.monotonic() + _SILENT
+    loop = Loop(session, inbox, sinks)
     # A second signal does not interrupt the writing of files.
     stopped: list[int] = []
     with handling(lambda number, _: stopped.append(number), signal.SIGINT, signal.SIGTERM):
         while not stopped:
             try:
-                arrival, read = inbox.get(timeout=_IDLE)
+                message = inbox.get(timeout=_IDLE)
             except Empty:
-                if time.monotonic() > silent_at:
-                    _log.warning("nothing has arrived in %g s; does the sender run?", _SILENT)
-                    silent_at = float("inf")
+                loop.wait()
                 continue
-            silent_at = float("inf")
             try:
-                columns = read()
+                loop.take(message)
             except EOFError:
                 break
-            except ValueError as error:
-                inbox.wrong += 1
-                if inbox.wrong == 1:
-                    _log.warning("a message that cannot be read: %s; more are counted", error)
-                continue
-            inbox.read += 1
-            if columns is None:
-                continue
-            if inbox.read <= _FIRST:
-                seen.update(columns)
-            if inbox.read == _FIRST:
-                _look(session, seen)
-            if ticks := session.take(columns, arrival):
-                for send in sinks:
-                    send(ticks)
-        last = session.close()
-        for send in sinks:
-            send(last)
-
-
-def _look(session: Session, seen: Set[str]) -> None:
-    """Warns of columns that no message has, and of samples that are too far apart."""
-    for name in session.columns:
-        if name not in seen:
-            _log.warning("none of %d messages has %r, which the configuration names", _FIRST, name)
-    for joint in session.joints:
-        usual = session.clocks[joint.time_column("")].usual
-        if usual > joint.longest_gap:
-            _log.warning(
-                "samples are %.3g s apart, and at most %.3g s are interpolated: set samplePeriod, "
-                "or time.longest_gap", usual, joint.longest_gap,
-            )  # fmt: skip
-            return
-
-
-def terminal() -> Sink:
-    """Creates a sink that prints the last estimate of each joint in a line on stderr."""
-    last: dict[str, Estimated] = {}
-    is_terminal = sys.stderr.isatty()
-    shown_at, shown = time.monotonic(), 0
-
-    def show(ticks: Sequence[Estimated]) -> None:
-        nonlocal shown_at, shown
-        last.update({each.joint: each for each in ticks})
-        now = time.monotonic()
-        if not last or now - shown_at <= (_EVERY if is_terminal else _RARELY):
-            return
-        shown_at = now
-        lines = [line.rstrip() for line in aligned([_row(each) for each in last.values()])]
-        if is_terminal:
-            width = shutil.get_terminal_size().columns - 1
-            lines = [f"{line[:width]}\033[K" for line in lines]
-            lines[0] = (f"\033[{shown}F" if shown else "") + lines[0]
-        click.echo("\n".join(lines), err=True)
-        shown = len(lines)
-
-    return show
-
-
-def _row(last: Estimated) -> tuple[str, ...]:
-    outputs = last.outputs
-    doubt = outputs["doubt"]
-    return (
-        last.joint,
-        f"{last.t:.1f} s",
-        f"{outputs['sigma']:.4g} +- {NORMAL_95 * outputs['sigma_std']:.2g} N.m/rad",
-        f"{outputs['tau_e']:.3g} N.m at {outputs['phi']:.3g} rad",
-        "confident" if doubt == "None" else f"not confident ({doubt})",
-    )
+        loop.end()

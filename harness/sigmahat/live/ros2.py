@@ -9,7 +9,7 @@ message. ROS_DOMAIN_ID and CYCLONEDDS_URI have their usual effect.
 import math
 import os
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import partial
 from itertools import groupby
 from typing import Any
@@ -24,7 +24,8 @@ from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 
-from sigmahat.live.live_joint import Estimated
+from sigmahat.live.events import Event
+from sigmahat.live.live_joint import NO_DATA, Estimated, News
 from sigmahat.live.loop import Inbox, Sink, Source
 from sigmahat.live.messages import Columns, number
 
@@ -33,7 +34,7 @@ ESTIMATES, DIAGNOSTICS = "/sigmahat/estimates", "/diagnostics"  # topics that ar
 _COLUMN = re.compile(r"(?P<topic>/[\w/]+)\.(?:time|(?:position|velocity|effort)\[.+\])")
 _SECOND = 1_000_000_000
 _RARELY = 1.0  # [s] between diagnostics
-_OK, _WARN = 0, 1
+_OK, _WARN, _STALE = 0, 1, 3  # levels of diagnostic_msgs/DiagnosticStatus
 _LARGEST_DOMAIN, _MOST_JOINTS, _AT_ONCE = 232, 1000, 1000
 _INTERFACES = {
     "stiffness": "sigma",
@@ -108,17 +109,19 @@ class Ros2:
             while True:
                 wake.wait(duration(seconds=1))
                 for name, reader in readers.items():
-                    for message in reader.take(N=_AT_ONCE):
-                        if isinstance(message, _JointState):  # not the end of a writer
-                            inbox.add(partial(self._columns, name, message), can_wait=False)
+                    for message in _messages(reader):
+                        inbox.add(partial(self._columns, name, message), can_wait=False)
 
         return read
 
     def _columns(self, topic: str, message: Any) -> Columns:
         """Returns the numbers of a JointState message by column.
 
-        Raises ValueError for a message without a stamp, or unequal numbers of names and values.
+        Raises ValueError for a message without a stamp, unequal numbers of names and values, and
+        an error in place of a message.
         """
+        if isinstance(message, Exception):
+            raise ValueError(f"{topic}: expected a JointState, got {message}") from message
         stamp = message.header.stamp.sec * _SECOND + message.header.stamp.nanosec
         if not stamp:
             raise ValueError(f"{topic}: expected a time in the header, got 0")
@@ -147,14 +150,16 @@ class Ros2:
         )
         said = -math.inf
 
-        def send(ticks: Sequence[Estimated]) -> None:
+        def send(news: Sequence[News]) -> None:
             nonlocal said
+            for event in (each for each in news if isinstance(each, Event)):
+                diagnostics.write(_Diagnostics(self._header(event.t), [_status_of_event(event)]))
+            ticks = [each for each in news if isinstance(each, Estimated)]
             for t, group in groupby(ticks, key=lambda tick: tick.t):
                 at_once = list(group)
-                seconds, rest = divmod(max(round(t * _SECOND) + (self._first or 0), 0), _SECOND)
-                header = _Header(_Time(seconds % 2**31, rest), "")
-                values = [[float(e.outputs[n]) for n in _INTERFACES.values()] for e in at_once]
-                interfaces = [_Interfaces(list(_INTERFACES), each) for each in values]
+                header = self._header(t)
+                values = [_values(each) for each in at_once]
+                interfaces = [_Interfaces(list(each), list(each.values())) for each in values]
                 names = [each.joint for each in at_once]
                 estimates.write(_DynamicJointState(header, names, interfaces))
                 if abs(t - said) >= _RARELY:
@@ -163,13 +168,49 @@ class Ros2:
 
         return send
 
+    def _header(self, t: float) -> Any:
+        seconds, rest = divmod(max(round(t * _SECOND) + (self._first or 0), 0), _SECOND)
+        return _Header(_Time(seconds % 2**31, rest), "")
+
+
+def _messages(reader: Any) -> Iterator[Any]:
+    """Yields the messages that wait, and an error in place of each that cannot be decoded.
+
+    They are taken one by one: the library would lose all messages that it takes with a bad one.
+    """
+    for _ in range(_AT_ONCE):
+        try:
+            taken = reader.take()
+        except core.DDSException:
+            raise
+        except Exception as error:  # a decoder fails in many ways, such as on names not in UTF-8
+            yield error
+            continue
+        if not taken:
+            return
+        if isinstance(taken[0], _JointState):  # not the end of a writer
+            yield taken[0]
+
+
+def _values(tick: Estimated) -> dict[str, float]:
+    """Values of the interfaces of a joint, by name."""
+    values = {name: float(tick.outputs[output]) for name, output in _INTERFACES.items()}
+    return {**values, "data_age": tick.data_age}
+
 
 def _status(tick: Estimated) -> Any:
     is_ok = bool(tick.outputs["confident"])
-    text = "confident" if is_ok else f"not confident: {tick.outputs['doubt']}"
+    level = _STALE if tick.outputs["doubt"] == NO_DATA else _OK if is_ok else _WARN
     values = [
         _KeyValue(key, f"{tick.outputs[key.partition(' ')[0]]:.6g}")
         for key in ("sigma [N.m/rad]", "sigma_std [N.m/rad]", "misfit")
     ]
+    values.append(_KeyValue("data_age [s]", f"{tick.data_age:.6g}"))
     name = f"sigmahat: stiffness of {tick.joint}"
-    return _Status(_OK if is_ok else _WARN, name, text, "", values)
+    return _Status(level, name, tick.in_words, "", values)
+
+
+def _status_of_event(event: Event) -> Any:
+    values = [_KeyValue(key, str(value)) for key, value in event.shown().items() if key != "text"]
+    level = _WARN if event.is_warning else _OK
+    return _Status(level, "sigmahat: events", event.in_words, "", values)

@@ -20,7 +20,8 @@ from numpy.typing import NDArray
 
 from sigmahat.files.output import sha256, write_whole
 from sigmahat.live.clock import Clock
-from sigmahat.live.live_joint import Estimated, LiveJoint
+from sigmahat.live.events import SenderRestarted
+from sigmahat.live.live_joint import LiveJoint, News
 from sigmahat.live.messages import Columns
 from sigmahat.recording import several_joints as of_file
 from sigmahat.recording.configuration import joints_of, read_configuration, read_document
@@ -96,8 +97,10 @@ class Session:
         self.recordings: list[Path] = []  # complete files of recordings
         self._recording: _Recording | None = None
 
-    def take(self, columns: Columns, arrival: int) -> list[Estimated]:
+    def take(self, columns: Columns, arrival: int) -> list[News]:
         """Computes the estimates at all ticks that a message allows, in the order of the joints.
+
+        Also returns what happened: a restart of the sender, changes of the stiffness.
 
         columns  values of the message, by the names in self.columns
         arrival  time of arrival of the message [ns] since 1970
@@ -111,10 +114,11 @@ class Session:
             if t is not None:
                 times[name] = t
             elif clock.has_restarted:
+                restarted = SenderRestarted(t=clock.newest, jump=clock.jump)
                 ended = self._end_recording()
                 for joint in self.joints:
                     joint.go_on()
-                return ended + self.take(columns, arrival)
+                return [restarted, *ended, *self.take(columns, arrival)]
             else:
                 kept.pop(name, None)
         if not times:
@@ -127,8 +131,8 @@ class Session:
         self._recording.add({**kept, ARRIVAL: arrival} if "" in times else kept)
         return [each for joint in self.joints for each in joint.take(columns, times)]
 
-    def _end_recording(self) -> list[Estimated]:
-        """Completes the recording, writes estimator states, and returns the remaining estimates.
+    def _end_recording(self) -> list[News]:
+        """Completes the recording, writes estimator states, and returns the remaining news.
 
         Raises OSError if a file cannot be written.
         """
@@ -140,7 +144,7 @@ class Session:
         write_whole(tomlkit.dumps(self._configuration()), path.with_suffix(".toml"))
         self.recordings.append(path)
         digest = sha256(path)
-        found: list[Estimated] = []
+        found: list[News] = []
         for joint in self.joints:
             folder = self._out / joint.configuration.joint
             folder.mkdir(exist_ok=True)
@@ -149,7 +153,7 @@ class Session:
             clock.restart()
         return found
 
-    def close(self) -> list[Estimated]:
+    def close(self) -> list[News]:
         return self._end_recording()
 
     def _configuration(self) -> tomlkit.TOMLDocument:
