@@ -15,7 +15,8 @@ class Estimator {
     this.type = type;
     this.wasm = instantiated(type);
     this.joint = this.wasm.malloc(this.wasm.sh_joint_size());
-    this.wasm.sh_joint_default(this.joint);
+    const { samplePeriod = variableOf(type, "samplePeriod").start } = parameters;
+    this.wasm.sh_joint_default(this.joint, Number(samplePeriod)); // which other start values follow
     for (const [name, value] of Object.entries(parameters)) this.#set(name, value);
     this.#check();
     this.wasm.sh_joint_start(this.joint);

@@ -43,9 +43,8 @@ void SysTick_Handler(void)
  */
 static void configure(sh_parameters *p)
 {
-    sh_parameters_default(p);
+    sh_parameters_default_at(p, (sh_real)1 / RATE);
     p->method = SH_METHOD_FILTERED_REGRESSION;
-    p->samplePeriod = (sh_real)1 / RATE;
     p->rls.n = 2;
     p->rls.m = 1;
     p->range.phi = (sh_real)0.03; /* largest expected deformation [rad] */

@@ -46,9 +46,8 @@ static int64_t larger(int64_t a, int64_t b)
 static int start(void)
 {
     sh_violation violation;
-    sh_parameters_default(&parameters);
+    sh_parameters_default_at(&parameters, (sh_real)(1e-9 * PERIOD_NS));
     parameters.method = SH_METHOD_FILTERED_REGRESSION;
-    parameters.samplePeriod = (sh_real)(1e-9 * PERIOD_NS);
     parameters.motor.gamma = (sh_real)robot_gear;
     parameters.motor.B = (sh_real)robot_B;
     parameters.motor.D_theta = (sh_real)robot_D_theta;

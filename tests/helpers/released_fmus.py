@@ -11,6 +11,7 @@ from fmi_runs import ESTIMATORS, PLANTS
 
 FMUS = sorted(ESTIMATORS + PLANTS)
 TWINS = [f"{name}_FMI3" for name in FMUS]
+INTEGERS = [f"{name}{version}_Integers" for name in ESTIMATORS for version in ("", "_FMI3")]
 STEP, STEPS = 1e-3, 1000
 
 # Largest permitted difference between two runs, relative to the range of the variable.
