@@ -14,6 +14,7 @@ from sigmahat.recording.false_samples import false_samples, returns
 from sigmahat.recording.limits import check_together
 from sigmahat.recording.log import Array, Log, LogError
 from sigmahat.recording.resampling import usual_gap
+from sigmahat.recording.times import set_back
 from sigmahat.recording.units import seconds
 
 _MOSTLY = 0.99  # least fraction of increasing steps in a column of times
@@ -62,7 +63,7 @@ def look_at(log: Log, name: str, quantity: str | None) -> tuple[Facts, Array]:
     steps = np.diff(finite)
     few = len(np.unique(finite[:_DISTINCT])) < min(_STATES, len(finite))
     integer = not few and bool(np.all(finite == np.round(finite)))
-    wrap = None if few else period_of_counter(steps, float(np.ptp(finite)))
+    wrap = None if few or quantity == "time" else period_of_counter(steps, float(np.ptp(finite)))
     increasing = float(np.mean(steps > 0)) if len(steps) else 0.0
     ends = float(finite.min()), float(finite.max())
     step = 1.0 if integer else step_of_encoder(finite, _STEPS)
@@ -198,6 +199,17 @@ def usual_times(columns: Iterable[TimeColumn]) -> TimeColumn:
     return replace(fastest, longest_gap=max(gaps, default=None))
 
 
+def _times(values: Array, unit: float) -> Array:
+    """Returns the times of a column [s], also of a clock that started again; unit: in seconds."""
+    times = values * unit
+    finite = np.isfinite(times)
+    if np.count_nonzero(finite) > 1:
+        back = set_back(times[finite], unit)
+        if back is not None:
+            times[finite] = back.continued(times[finite])
+    return times
+
+
 def _samples_of(values: Array, t: Array | None, clock: TimeColumn) -> TimeColumn:
     """Returns the times of the samples of one column, which may be fewer than the rows.
 
@@ -270,7 +282,7 @@ def read_columns(log: Log) -> Columns:
     }
     named = {name: unit for name, unit in units.items() if meanings[name].quantity == "time"}
     units = named or units
-    times = {name: values[name] * seconds(unit) for name, unit in units.items()}
+    times = {name: _times(values[name], seconds(unit)) for name, unit in units.items()}
     clocks: dict[str | None, TimeColumn] = {}
     for name, t in times.items():
         T = interval(t)

@@ -213,6 +213,20 @@ class ClockSetBack(Note):
 
 
 @dataclass(frozen=True, kw_only=True)
+class NoSignal(Note):
+    """The column of a torque has one value in all rows."""
+
+    kind: Literal["no_signal"] = "no_signal"
+    port: str
+    column: str
+    value: float  # in the unit of the column
+
+    @property
+    def in_words(self) -> str:
+        return f"{self.port}: {self.column} is {self.value:g} throughout"
+
+
+@dataclass(frozen=True, kw_only=True)
 class PlaceholderLeftOut(Note):
     """Rows with a placeholder instead of a sample were left out."""
 
@@ -426,7 +440,7 @@ class FirstPart(Note):
 RecordingNote = Annotated[
     Encoding | RowOfUnits | LinesAboveTable | CommentsLeftOut | RepeatedName | ShortRow
     | Rows | NoTimeColumn | RepeatedTimes | MissingTimes | ClockStartedAgain | ClockSetBack
-    | PlaceholderLeftOut | HeldLeftOut | CounterReturned
+    | NoSignal | PlaceholderLeftOut | HeldLeftOut | CounterReturned
     | Unwrapped | Delayed | Interpolated | FasterThanTicks | BetweenTicks | MissingSamples
     | CounterInGap | CounterAtStart | SkippedTicks | FirstPart,
     Field(discriminator="kind"),

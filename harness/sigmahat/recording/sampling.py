@@ -26,6 +26,7 @@ from sigmahat.recording.notes import (
     HeldLeftOut,
     Interpolated,
     MissingSamples,
+    NoSignal,
     PlaceholderLeftOut,
     RecordingNote,
     Rows,
@@ -202,6 +203,11 @@ def _without_false(
     t  times of the column since the first tick [s]
     """
     is_position = name in ("theta", "q")
+    if name in ("tau", "tau_e_sensor"):
+        low, high = np.fmin.reduce(values), np.fmax.reduce(values)  # which ignore nan
+        if low == high:
+            notes.append(NoSignal(port=name, column=port.column, value=float(low)))
+            return values
     false = false_samples(values, is_position, port.wrap)
     for placeholder in false.placeholders:
         number, first = len(placeholder.rows), int(placeholder.rows[0]) + 1
