@@ -33,6 +33,7 @@ _LARGE_STEP = 0.99  # quantile of the steps that counts as a large usual step
 _CANDIDATES = 3  # values that are tried as placeholders
 _CLOSE = 0.2  # ratio of the distance of both neighbours to their distance from a placeholder
 _SHORT = 3  # most rows of a placeholder in a torque
+_LIMIT = 0.3  # distance of a limit from the other torques, relative to their range
 _LEAST = 3  # rows that are certainly false, before all rows with the value are
 _OPPOSITE = 0.1  # tolerance of a jump over the whole range, relative to the range
 _COUNTS = 8.0  # least step before and after a held value, in steps of the encoder
@@ -54,6 +55,7 @@ class Placeholder:
 
     value: float  # in the unit of the column
     rows: NDArray[np.int64]  # from 0 on
+    first: int  # the first of these rows that certainly has no sample
 
 
 @dataclass(frozen=True)
@@ -96,7 +98,8 @@ def false_samples(values: Array, is_position: bool, wrap: float | None = None) -
     if not _is_varied(given):
         return FalseSamples()
     placeholders = [
-        Placeholder(each.value, rows[each.rows]) for each in _placeholders(given, is_position, wrap)
+        Placeholder(each.value, rows[each.rows], int(rows[each.first]))
+        for each in _placeholders(given, is_position, wrap)
     ]
     if not is_position:
         return FalseSamples(placeholders)
@@ -125,12 +128,16 @@ def _is_suspect(values: Array) -> bool:
         size = np.diff(part)
         size = np.abs(size, out=size)
         if not np.isfinite(size).all():
-            size = np.abs(np.diff(part[np.isfinite(part)]))
+            part = part[np.isfinite(part)]
+            size = np.abs(np.diff(part))
         if len(size) < 2:
             continue
         largest = float(size.max())
-        if largest > _FAR * span and largest > _MANY_TIMES * float(np.median(size)):
-            return True
+        if largest > _FAR * span:
+            # Rows of two senders may alternate, so that every second row goes on.
+            usual = min(np.median(size), np.median(np.abs(part[2:] - part[:-2])))
+            if largest > _MANY_TIMES * usual:
+                return True
         least = max(_FINEST * span, 1e-300)
         if largest > least:
             stops = np.flatnonzero((size[1:] == 0) & (size[:-1] > least))
@@ -175,17 +182,16 @@ def _placeholders(values: Array, is_position: bool, wrap: float | None) -> Itera
             certain &= np.abs(least / span - 1) > _OPPOSITE
         if not is_position:
             certain &= (lengths <= _SHORT) & (steps[after - 1] < _CLOSE * least)
-            is_limit = not low < value < high and low - span <= value <= high + span
+            near = _LIMIT * span
+            is_limit = not low < value < high and low - near <= value <= high + near
             if is_limit and value != 0:
                 continue  # of the drive or of the sensor
         if int(np.sum(lengths[certain])) < _LEAST:
             continue
         is_outside = not low - far < value < high + far
         longest = math.inf if is_outside else int(lengths[certain].max())
-        rows = zip(begins, ends, strict=True)
-        yield Placeholder(
-            value, np.concatenate([np.arange(a, b) for a, b in rows if b - a <= longest])
-        )
+        false = [np.arange(a, b) for a, b in zip(begins, ends, strict=True) if b - a <= longest]
+        yield Placeholder(value, np.concatenate(false), int(begins[inside][certain][0]))
 
 
 def _candidates(values: Array, steps: Array) -> list[float]:
@@ -222,28 +228,44 @@ def _held(values: Array) -> NDArray[np.int64]:
     rows = np.diff(change)  # over which each value lasts
     large = size > least
     goes_on = large[:-1] & large[1:] & (steps[:-1] * steps[1:] > 0)
-    if _is_slow(rows[goes_on], len(rows)):
-        held = rows > 1
-    else:
-        # The step after the held value makes up for the motion that was missed.
-        beyond = np.append(size[2:], np.inf)
-        missed = rows * np.minimum(size[:-1], beyond)
-        held = goes_on & np.append(goes_on[1:], False) & (rows >= _LEAST)
-        held &= size[1:] > np.maximum(_CAUGHT_UP * missed, _BESIDE * np.maximum(size[:-1], beyond))
+    usual = _rows_of_slow_sensor(rows[goes_on], len(rows))
+    if usual is not None:
+        return _repeats(change, len(values), usual)
+    # The step after the held value makes up for the motion that was missed.
+    beyond = np.append(size[2:], np.inf)
+    missed = rows * np.minimum(size[:-1], beyond)
+    held = goes_on & np.append(goes_on[1:], False) & (rows >= _LEAST)
+    held &= size[1:] > np.maximum(_CAUGHT_UP * missed, _BESIDE * np.maximum(size[:-1], beyond))
     ends = zip(change[:-1][held], rows[held], strict=True)
     return np.concatenate([none, *(np.arange(first + 1, first + n) for first, n in ends)])
 
 
-def _is_slow(rows: NDArray[np.int64], values: int) -> bool:
-    """Whether the values come from a sensor that is slower than the log.
+def _rows_of_slow_sensor(rows: NDArray[np.int64], values: int) -> int | None:
+    """Returns the usual number of rows with one value of a sensor slower than the log, else None.
 
     rows    over which the values last that differ clearly from those before and after
     values  number of all values
     """
     if len(rows) < max(_HELD, _MOVING * values):
-        return False
-    usual = float(np.median(rows))
-    return usual >= 2 and float(np.mean(np.abs(rows - usual) <= 1)) > _REGULAR
+        return None
+    usual = int(np.median(rows))
+    return usual if usual >= 2 and float(np.mean(np.abs(rows - usual) <= 1)) > _REGULAR else None
+
+
+def _repeats(change: NDArray[np.int64], length: int, usual: int) -> NDArray[np.int64]:
+    """Returns the rows of a column that repeat the value of a slow sensor.
+
+    A sensor at rest has a new sample of the same value after the usual number of rows.
+
+    change  first row of each value but the first
+    length  number of rows
+    """
+    firsts = np.append(0, change)
+    rows = np.diff(np.append(firsts, length))
+    place = np.arange(length) - np.repeat(firsts, rows)
+    is_rest = np.repeat(rows > usual + 1, rows)
+    is_sample = (place == 0) | (is_rest & (place % usual == 0))
+    return np.flatnonzero(~is_sample)
 
 
 @dataclass(frozen=True)

@@ -210,7 +210,7 @@ def _without_false(
             return values
     false = false_samples(values, is_position, port.wrap)
     for placeholder in false.placeholders:
-        number, first = len(placeholder.rows), int(placeholder.rows[0]) + 1
+        number, first = len(placeholder.rows), placeholder.first + 1
         share = number / len(values)
         value = placeholder.value
         notes.append(
@@ -252,10 +252,11 @@ def _notes_on(name: str, resampled: Resampled, missing: int, T: float) -> Iterat
         yield FasterThanTicks(port=name, sample_interval=interval)
     elif resampled.is_even and resampled.between:
         yield BetweenTicks(port=name, samples=resampled.between)
-    lost = len(resampled.values) * T / interval - resampled.samples
-    # Rows of other signals have no sample of this port either, but none is missing.
-    if lost > 0.5 * missing > 0 and abs(interval / T - 1) < 0.5:
-        yield MissingSamples(port=name, samples=missing)
+    if missing and abs(interval / T - 1) < 0.5:
+        # Rows of other signals have no sample of this port either, but none is missing.
+        lost = len(resampled.values) * T / interval - resampled.samples
+        if lost > 0.5 * missing:
+            yield MissingSamples(port=name, samples=missing)
 
 
 def _put_right(values: Array, configuration: Configuration, T: float) -> Iterator[RecordingNote]:

@@ -27,6 +27,7 @@ _PERIODS = (2.0**16, 2.0**24, 2.0**31, 2.0**32, 1e6, 60.0, 3600.0, 86400.0, 8640
 day, and parts of seconds of a day."""
 _SOON = 10.0  # largest time over a step back, in usual times between rows
 _RUN = 10  # least number of rows before and after a clock that was set back
+_MADE_UP = 0.5  # ratio of a step forward to a step back for which the rows are in a wrong order
 _GAP = 1.0  # [s] least gap that replaces a step back
 _LONG_AGO = 1e6  # [s] A larger time counts from 1970, or from the start of a machine.
 
@@ -135,12 +136,11 @@ def set_back(times: Array, unit: float) -> SetBack | None:
         over = steps[at] + period * unit
         if np.all((over > 0) & (over < _SOON * usual)):
             return SetBack(at, period, np.full(len(at), period * unit))
-    # Rows in a wrong order have a step forward that brings the time back.
-    later = steps[at[0] + 1 :]
+    # Rows in a wrong order have a step forward that makes up for the step back.
     is_once = len(at) == 1 and _RUN <= at[0] < len(steps) - _RUN
-    is_forward = is_once and float(later.max()) > 0.5 * -float(steps[at[0]])
-    is_forward &= is_once and float(later.max()) > _SOON * usual
-    return SetBack(at, None, -steps[at]) if is_once and not is_forward else None
+    if is_once and float(steps.max()) < _MADE_UP * -float(steps[at[0]]):
+        return SetBack(at, None, -steps[at])
+    return None
 
 
 def _shown(times: Array, i: int) -> str:
