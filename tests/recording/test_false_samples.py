@@ -21,6 +21,8 @@ from shared_data import data_folder
 from sigmahat.checks.check import check
 from sigmahat.checks.findings import Kind
 from sigmahat.checks.text import sentence
+from sigmahat.guess.columns import interval, read_columns
+from sigmahat.guess.guess import guess
 from sigmahat.recording.false_samples import false_samples, returns
 from sigmahat.recording.log import LogError, LogInMemory
 from sigmahat.recording.notes import (
@@ -28,6 +30,7 @@ from sigmahat.recording.notes import (
     ClockStartedAgain,
     CounterReturned,
     HeldLeftOut,
+    MissingSamples,
     PlaceholderLeftOut,
     RecordingNote,
 )
@@ -306,3 +309,59 @@ def test_a_torque_that_is_0_throughout_tells_nothing(shell: Shell) -> None:
     write_log({**moving(), "tau": np.zeros(ROWS)}, Path("log.csv"))
     answer = shell.json("estimate log.csv")["answer"]
     assert answer.startswith("cannot tell: the torque is 0 throughout (tau)")
+
+
+def merged() -> dict[str, Array]:
+    """A log of 100 Hz in which each signal has rows of its own."""
+    log = moving()
+    rows = np.arange(0, ROWS, 10)
+    t = np.ravel(np.column_stack([log["t"][rows] + late for late in (0.0, 1.2e-3, 2.4e-3)]))
+    columns = {"t": t}
+    for place, name in enumerate(("theta", "q", "tau")):
+        columns[name] = np.full(len(t), np.nan)
+        columns[name][place::3] = np.interp(t[place::3], log["t"], log[name])
+    return columns
+
+
+def test_the_period_is_that_of_the_samples_of_a_port() -> None:
+    columns = read_columns(LogInMemory(Path("log"), merged()))
+    (joint,) = guess(columns).values()
+    assert joint.clock.interval == pytest.approx(0.01)
+    assert joint.clock.longest_gap is None
+    configuration = in_memory(configured("samplePeriod = 0.01"))
+    samples = sample(LogInMemory(Path("log"), merged()), configuration, 0.01)
+    assert np.isfinite(samples.values[1:-1]).all()
+    assert not [note for note in samples.notes if isinstance(note, MissingSamples)]
+
+
+def test_rows_of_a_second_publisher_do_not_change_the_period() -> None:
+    log = moving()
+    theta = np.insert(log["theta"][::10], np.arange(1, 800, 10), 0.0)
+    q = np.insert(log["q"][::10], np.arange(1, 800, 10), 0.0)
+    tau = np.insert(log["tau"][::10], np.arange(1, 800, 10), np.nan)
+    t = np.insert(
+        log["t"][::10], np.arange(1, 800, 10), log["t"][::10][np.arange(1, 800, 10)] - 4e-3
+    )
+    columns = {"t": t, "motor_position": theta, "link_position": q, "motor_torque": tau}
+    (joint,) = guess(read_columns(LogInMemory(Path("log"), columns))).values()
+    assert joint.clock.interval == pytest.approx(0.01)
+
+
+def test_columns_of_different_rates_get_the_period_of_the_fastest() -> None:
+    log = moving()
+    columns = {"t": log["t"], "motor_position": log["theta"], "motor_torque": log["tau"]}
+    columns["link_position"] = np.full(ROWS, np.nan)
+    columns["link_position"][::5] = log["q"][::5]
+    (joint,) = guess(read_columns(LogInMemory(Path("log"), columns))).values()
+    assert joint.clock.interval == pytest.approx(1e-3)
+
+
+def test_a_longest_gap_that_is_shorter_than_the_time_between_samples_is_refused() -> None:
+    configuration = in_memory("time.longest_gap = 0.007\n" + configured())
+    with pytest.raises(LogError, match=r"its samples are 0.01 s apart; remove longest_gap"):
+        sample(LogInMemory(Path("log"), merged()), configuration, 1.2e-3)
+
+
+def test_jitter_gives_no_odd_digits_to_the_period() -> None:
+    t = 2e-3 * np.arange(5000) + RNG.normal(0, 2e-5, 5000)
+    assert interval(np.sort(t)) == 0.002

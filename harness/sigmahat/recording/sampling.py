@@ -33,12 +33,19 @@ from sigmahat.recording.notes import (
     SkippedTicks,
     Unwrapped,
 )
-from sigmahat.recording.resampling import AT_TICK, Resampled, resample
+from sigmahat.recording.resampling import (
+    AT_TICK,
+    Resampled,
+    resample,
+    usual_gap,
+    with_tolerance,
+)
 from sigmahat.recording.times import times_of
 from sigmahat.recording.units import Conversion
 
 _MOST_TICKS = 5_000_000
 _MOST_TICKS_OF_MANY_ROWS = 20  # ticks per row; limits memory by the size of the log
+_SLOW = 1.5  # ratio of the time between samples to T from which values must be interpolated
 _MOST_TICKS_PER_ROW = 200  # with more, the unit of the time is wrong
 
 
@@ -165,6 +172,12 @@ def _port_at_ticks(
             f"port {name}: its column has no numbers; name another column, or remove the port"
         )
     resampled = resample(t, column, T, ticks, time.longest_gap)
+    longest, interval = time.longest_gap, resampled.interval
+    if longest is not None and interval > max(with_tolerance(longest), _SLOW * T):
+        raise LogError(
+            f"port {name}: time.longest_gap is {longest:g} s, but its samples are {interval:.3g} s "
+            f"apart; remove longest_gap, or set it to {usual_gap(interval):.3g}"
+        )
     notes += _notes_on(name, resampled, missing, T)
     return resampled.values
 
