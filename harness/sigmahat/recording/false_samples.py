@@ -91,7 +91,7 @@ def false_samples(values: Array, is_position: bool, wrap: float | None = None) -
     is_position  whether the column is the angle of motor or link, which cannot change suddenly
     wrap         period of a counter that starts again, in the unit of the column
     """
-    if not _is_suspect(values):
+    if not _is_suspect(values, is_position):
         return FalseSamples()
     rows = np.flatnonzero(np.isfinite(values))
     given = values[rows]
@@ -113,8 +113,8 @@ def _is_varied(values: Array) -> bool:
     return len(np.unique(values[:: max(1, len(values) // _LOOKED_AT)])) >= _FEW
 
 
-def _is_suspect(values: Array) -> bool:
-    """Whether the column has a large step, or motion that stops within one row.
+def _is_suspect(values: Array, is_position: bool) -> bool:
+    """Whether the column has a large step, or is a position that stops within one row.
 
     Nearly all columns have neither, and are not looked at any further.
     """
@@ -139,7 +139,7 @@ def _is_suspect(values: Array) -> bool:
             if largest > _MANY_TIMES * usual:
                 return True
         least = max(_FINEST * span, 1e-300)
-        if largest > least:
+        if is_position and largest > least:
             stops = np.flatnonzero((size[1:] == 0) & (size[:-1] > least))
             if len(stops):
                 count = float(size[size > 1e-9 * largest].min())
@@ -294,7 +294,7 @@ def returns(values: Array, t: Array | None) -> Returns | None:
     t       times [s], nan where unknown; None for even times. A joint moves during a gap, so that
             a step over a gap is no jump.
     """
-    if not _is_suspect(values):
+    if not _is_suspect(values, is_position=True):
         return None
     rows = np.flatnonzero(
         np.isfinite(values) if t is None else np.isfinite(values) & np.isfinite(t)
