@@ -49,7 +49,7 @@ def test_names(name: str, quantity: str | None, side: str | None, unit: str | No
 
 
 def facts(values: np.ndarray) -> Facts:
-    return look_at(LogInMemory(Path("log"), {"x": values}), "x")[0]
+    return look_at(LogInMemory(Path("log"), {"x": values}), "x", "position")[0]
 
 
 @pytest.mark.parametrize("period", [4096, 2**32, 20_000, 360.0, 2 * np.pi])

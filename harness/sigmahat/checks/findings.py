@@ -48,6 +48,8 @@ class Kind(str, Enum):
     STEP = "step of the encoder"
     JUMP = "jumps of the encoder"
     SPIKE = "single samples far off"
+    PLACEHOLDER = "values in place of samples"
+    HELD = "samples that repeat an earlier one"
     SATURATION = "saturation of the torque"
     NO_TORQUE = "torque that is only noise"
     NOISE = "prediction error and noise"
@@ -78,6 +80,7 @@ class Finding:
     """Other keys that would explain the finding, each key with the value required."""
     about: str = ""
     """Detail of the kind: a port, a parameter of the FMU, or an item of the FMU's output doubt."""
+    row: int | None = None  #: First row of the log that shows the finding, from 1 on, if one does.
 
     def as_dict(self) -> dict[str, Any]:
         """Returns the finding for JSON."""

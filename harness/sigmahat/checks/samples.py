@@ -13,19 +13,25 @@ from sigmahat.motor.noise import is_only_noise
 from sigmahat.recording.column import RARE, restart, share_at_ends, spikes
 from sigmahat.recording.configuration import Port
 from sigmahat.recording.counters import Unwrapping
+from sigmahat.recording.false_samples import false_samples
 from sigmahat.recording.log import Array
+from sigmahat.recording.notes import CounterReturned, HeldLeftOut, PlaceholderLeftOut
 
 
 def of_columns(view: LogView) -> Iterator[Finding]:
+    """Finds what single columns show, and what the resampling found in them."""
+    yield from _of_notes(view)
     for name, port in view.configuration.ports.items():
         if port.value is not None:
             continue
         values = view.log.read(port.column)
+        is_position = name in ("theta", "q")
+        values = false_samples(values, is_position, port.wrap).left_out(values)
         finite = np.isfinite(values)
         values = values if finite.all() else values[finite]  # avoids a copy of a long log
-        if name in ("theta", "q"):
+        if is_position:
             step = known_step(values)
-            yield from list(_of_spikes(name, port, values, step)) or _of_jump(name, port, values)
+            yield from list(_of_spikes(name, port, values, step)) or _of_jump(view, name, values)
             yield from _of_step(view, name, step)
         if name == "tau" and is_only_noise(values):
             key, size = f"ports.{name}.column", float(np.std(values))
@@ -45,13 +51,42 @@ def at_rest(view: LogView) -> Iterator[Finding]:
         yield Finding(Kind.AT_REST, Severity.WRONG, key, measured, "s", about=about)
 
 
-def _of_jump(name: str, port: Port, values: Array) -> Iterator[Finding]:
-    """Finds a counter that jumps back by its whole range, although the port has no wrap."""
-    counter = restart(values) if port.wrap is None else None
+def _of_notes(view: LogView) -> Iterator[Finding]:
+    """Converts notes on samples that were left out to findings."""
+    for note in view.samples.notes:
+        if isinstance(note, PlaceholderLeftOut):
+            yield Finding(
+                Kind.PLACEHOLDER,
+                Severity.NOTE,
+                f"ports.{note.port}.column",
+                note.share,
+                "",
+                note.value,
+                about=note.port,
+                row=note.row,
+            )
+        elif isinstance(note, HeldLeftOut):
+            key = f"ports.{note.port}.column"
+            share, row = note.share, note.row
+            yield Finding(Kind.HELD, Severity.NOTE, key, share, "", about=note.port, row=row)
+
+
+def _of_jump(view: LogView, name: str, values: Array) -> Iterator[Finding]:
+    """Finds a counter that jumps, although the port has no wrap."""
+    port = view.configuration.ports[name]
+    if port.wrap is not None:
+        return
+    key, unit = f"ports.{name}.wrap", port.unit or "rad"
+    counter = restart(values)
     if counter is not None:
-        key, unit = f"ports.{name}.wrap", port.unit or "rad"
         jump, period = counter.jump, counter.period
         yield Finding(Kind.JUMP, Severity.WRONG, key, jump, unit, None, period, about=name)
+        return
+    for note in view.samples.notes:
+        if isinstance(note, CounterReturned) and note.port == name:
+            severity = Severity.NOTE if note.period is None else Severity.WRONG
+            jump, period, row = note.largest, note.period, note.row
+            yield Finding(Kind.JUMP, severity, key, jump, unit, None, period, about=name, row=row)
 
 
 def _of_spikes(name: str, port: Port, values: Array, step: float) -> Iterator[Finding]:

@@ -83,6 +83,8 @@ def _what(f: Finding) -> str:
         given=f.expected,
         reason=DOUBTS.get(f.about, ("", f.about))[1],
         effect=WORDS.get(f.about, ""),
+        row=f.row,
+        in_row="" if f.row is None else f" in row {f.row}",
         gain=f"known to {100 * f.expected:.3g} %" if f.expected else "taken as exact",
     )
 
@@ -121,9 +123,15 @@ _SENTENCES: Mapping[Kind, str] = {
     Kind.UNIT: "{about}; a wrong unit of both changes nothing but the stiffness",
     Kind.STEP: "the values of {about} change in steps of {measured}, the configured encoder has "
     "{expected}",
-    Kind.JUMP: "{about} jumps by {measured}, as a counter that starts again",
+    Kind.JUMP: "{about} jumps by {measured}{in_row}, as a counter that starts again",
     Kind.SPIKE: "{about} is up to {measured} away from both neighbours in {given:g} samples: they "
     "were lost, leave them empty",
+    Kind.PLACEHOLDER: "{percent} of the samples are {given:g} between values far from it, first in "
+    "row {row}: another sender, or no answer of the sensor; they are left out. Stop the other "
+    "sender, or leave these cells empty",
+    Kind.HELD: "{percent} of the samples repeat the value before while the joint moves, first in "
+    "row {row}: the sensor is slower than the log, or did not answer; they are left out. Record "
+    "this column with times of its own, or leave these cells empty",
     Kind.SATURATION: "the torque stays at an end of its range for {percent} of the samples",
     Kind.NO_TORQUE: "the torque is only noise ({measured}): the motor is off, or the column is "
     "wrong. The stiffness then rests on motor.B, motor.D_theta and the Coulomb friction alone",

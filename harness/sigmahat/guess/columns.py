@@ -1,5 +1,6 @@
 """Analyses the columns of a log for the guess: names, values, steps, counters, and times."""
 
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -9,12 +10,16 @@ import numpy as np
 from sigmahat.guess.words import Meaning, meaning
 from sigmahat.recording.column import period_of_counter, step_of_encoder
 from sigmahat.recording.counters import Unwrapping
+from sigmahat.recording.false_samples import false_samples, returns
 from sigmahat.recording.limits import check_together
 from sigmahat.recording.log import Array, Log, LogError
+from sigmahat.recording.resampling import usual_gap
+from sigmahat.recording.times import set_back
 from sigmahat.recording.units import seconds
 
 _MOSTLY = 0.99  # least fraction of increasing steps in a column of times
 _NAMED = 0.8  # least fraction of increasing steps in a column that is named as times
+_SAME_TIMES = 0.01  # tolerance of the time between samples, relative to that between rows
 _EVEN = 0.05  # largest relative difference of a step from the usual step
 _MISSING = 1.8  # ratio of a time step to the usual step beyond which rows are lost
 _GAP = 3.0  # ratio of a time step to the usual step beyond which the step is a gap
@@ -41,19 +46,24 @@ class Facts:
     text: str = ""  # error message for a column that does not contain numbers
 
 
-def look_at(log: Log, name: str) -> tuple[Facts, Array]:
-    """Reads facts and unwrapped values of a column; no values if the column contains text."""
+def look_at(log: Log, name: str, quantity: str | None) -> tuple[Facts, Array]:
+    """Reads facts and unwrapped values of a column; no values if the column contains text.
+
+    quantity  by the name of the column
+    """
     try:
         values = log.read(name)
     except LogError as error:
         return Facts(text=str(error)), np.empty(0)
+    if quantity != "time":
+        values = false_samples(values, quantity == "position").left_out(values)
     finite = values[np.isfinite(values)]
     if not len(finite):
         return Facts(), values
     steps = np.diff(finite)
     few = len(np.unique(finite[:_DISTINCT])) < min(_STATES, len(finite))
     integer = not few and bool(np.all(finite == np.round(finite)))
-    wrap = None if few else period_of_counter(steps, float(np.ptp(finite)))
+    wrap = None if few or quantity == "time" else period_of_counter(steps, float(np.ptp(finite)))
     increasing = float(np.mean(steps > 0)) if len(steps) else 0.0
     ends = float(finite.min()), float(finite.max())
     step = 1.0 if integer else step_of_encoder(finite, _STEPS)
@@ -113,7 +123,7 @@ def interval(times: Array) -> float:
     usual = float(np.median(steps))
     near = steps[np.abs(steps / usual - 1) < _EVEN]
     if len(near) > 0.9 * len(steps):
-        return float(f"{near.mean():.6g}")
+        return _rounded(near)
     if _is_coarse(steps, usual):
         return float(f"{steps[steps < _GAP * usual].mean():.4g}")
     steps = steps[steps < _GAP * usual]
@@ -137,26 +147,23 @@ def _is_coarse(steps: Array, usual: float) -> bool:
     return bool(np.abs(off).max() < whole.min())
 
 
+def _rounded(steps: Array) -> float:
+    """Computes the mean of steps with at most six digits, and no more than their jitter allows."""
+    mean = float(steps.mean())
+    tolerance = 2.0 * float(steps.std()) / math.sqrt(len(steps))
+    for digits in range(1, 6):
+        short = float(f"{mean:.{digits}g}")
+        if abs(short - mean) <= tolerance:
+            return short
+    return float(f"{mean:.6g}")
+
+
 def _round(T: float) -> float:
     """Rounds the period of a clock with jitter, if a round number is within 1 % of T."""
     short = float(f"{T:.2g}")
     rate = 1 / float(f"{1 / T:.2g}")
     best = min((short, rate), key=lambda each: abs(each / T - 1))
     return float(f"{best if abs(best / T - 1) < 0.01 else T:.6g}")
-
-
-_WINDOW = 20_000  # samples in which columns are compared
-
-
-@dataclass(frozen=True)
-class Column:
-    name: str
-    meaning: Meaning
-    facts: Facts
-    clock: str | None  # the column with the times of this column; None without times
-    window: Array
-    """Unwrapped values in the part with most motion, at the same times for all columns [size: n];
-    empty if the column has no numbers."""
 
 
 _LOST = 1e-3  # least number of gaps that are interpolated, relative to the number of rows
@@ -178,6 +185,68 @@ class TimeColumn:
     unit: str = "s"
     interval: float = 1e-3  # usual time between rows [s]
     longest_gap: float | None = None  # as `lost_rows`
+
+
+def usual_times(columns: Iterable[TimeColumn]) -> TimeColumn:
+    """Returns the times of the columns of one joint, with a unit in common: those of the fastest,
+    and a longest gap that suits all."""
+    columns = list(columns)
+    fastest = min(columns, key=lambda column: column.interval)
+    gaps = [column.longest_gap for column in columns if column.longest_gap is not None]
+    slowest = max(column.interval for column in columns)
+    if gaps and slowest > _MISSING * fastest.interval:
+        gaps.append(float(f"{usual_gap(slowest):.6g}"))
+    return replace(fastest, longest_gap=max(gaps, default=None))
+
+
+def _times(values: Array, unit: float) -> Array:
+    """Returns the times of a column [s], also of a clock that started again; unit: in seconds."""
+    times = values * unit
+    finite = np.isfinite(times)
+    if np.count_nonzero(finite) > 1:
+        back = set_back(times[finite], unit)
+        if back is not None:
+            times[finite] = back.continued(times[finite])
+    return times
+
+
+def _samples_of(values: Array, t: Array | None, clock: TimeColumn) -> TimeColumn:
+    """Returns the times of the samples of one column, which may be fewer than the rows.
+
+    t      times of the rows [s]; None without times
+    clock  the times of the rows
+    """
+    finite = np.isfinite(values)
+    if t is None or finite.all() or np.count_nonzero(finite) < 2:
+        return clock
+    given = t[finite]
+    T = interval(given)
+    if abs(T / clock.interval - 1) < _SAME_TIMES:
+        return clock
+    return TimeColumn(clock.unit, T, lost_rows(given, T))
+
+
+def _joined(facts: Facts, values: Array, t: Array | None) -> tuple[Facts, Array]:
+    """Removes the jumps of a counter that starts again at any value; t: times of the rows [s]."""
+    jumps = returns(values, t)
+    if jumps is None:
+        return facts, values
+    return replace(facts, wrap=jumps.period), jumps.joined(values)
+
+
+_WINDOW = 20_000  # samples in which columns are compared
+
+
+@dataclass(frozen=True)
+class Column:
+    name: str
+    meaning: Meaning
+    facts: Facts
+    clock: str | None  # the column with the times of this column; None without times
+    samples: TimeColumn  # the times of its samples, in rows with a value
+    window: Array
+    """Unwrapped values in the part with most motion, at the same times for all columns [size: n];
+    empty if the column has no numbers."""
 
 
 @dataclass(frozen=True)
@@ -203,7 +272,7 @@ def read_columns(log: Log) -> Columns:
     values: dict[str, Array] = {}
     meanings = {name: meaning(name) for name in log.columns}
     for name in log.columns:
-        facts[name], values[name] = look_at(log, name)
+        facts[name], values[name] = look_at(log, name, meanings[name].quantity)
         if meanings[name].side == "setting":  # two settings make a set-point
             facts[name] = replace(facts[name], varies=facts[name].low < facts[name].high)
     units = {
@@ -213,7 +282,7 @@ def read_columns(log: Log) -> Columns:
     }
     named = {name: unit for name, unit in units.items() if meanings[name].quantity == "time"}
     units = named or units
-    times = {name: values[name] * seconds(unit) for name, unit in units.items()}
+    times = {name: _times(values[name], seconds(unit)) for name, unit in units.items()}
     clocks: dict[str | None, TimeColumn] = {}
     for name, t in times.items():
         T = interval(t)
@@ -225,9 +294,18 @@ def read_columns(log: Log) -> Columns:
         clock_of[name] = max(same, key=partial(_common, name), default=None)
     signals = [name for name in log.columns if name not in units]
     moving = [name for name in signals if facts[name].varies]
-    T = min((clocks[clock_of[name]].interval for name in moving), default=clocks[None].interval)
+    samples_of = {}
+    for name in signals:
+        clock, of_rows = clocks[clock_of[name]], times.get(clock_of[name] or "")
+        samples_of[name] = _samples_of(values[name], of_rows, clock)
+        may_be_position = meanings[name].quantity in ("position", None)
+        if may_be_position and facts[name].wrap is None and facts[name].varies:
+            facts[name], values[name] = _joined(facts[name], values[name], of_rows)
+    T = min((samples_of[name].interval for name in moving), default=clocks[None].interval)
     windows = dict.fromkeys(signals, np.empty(0)) | _windows(moving, values, clock_of, times, T)
-    found = [Column(n, meanings[n], facts[n], clock_of[n], windows[n]) for n in signals]
+    found = [
+        Column(n, meanings[n], facts[n], clock_of[n], samples_of[n], windows[n]) for n in signals
+    ]
     return Columns(found, clocks, facts, T)
 
 

@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from sigmahat.fmi.unknown_name import unknown
-from sigmahat.guess.columns import Column, Columns, TimeColumn
+from sigmahat.guess.columns import Column, Columns, TimeColumn, usual_times
 from sigmahat.guess.ports import PortGuess, guess_ports
 from sigmahat.guess.roles import Roles, assign, chosen_roles
 from sigmahat.recording.log import Log, LogError
@@ -75,7 +75,11 @@ def guess(columns: Columns) -> dict[str, JointGuess]:
         clocks = [role.column.clock for role in roles.ports.values()]
         main = clocks[0] if clocks else next(iter(columns.clocks))
         ports = guess_ports(roles, columns, main)
-        found[name] = JointGuess(name, main, columns.clocks[main], ports)
+        samples = [
+            role.column.samples for role in roles.ports.values() if role.column.clock == main
+        ]
+        clock = usual_times(samples or [columns.clocks[main]])
+        found[name] = JointGuess(name, main, clock, ports)
     return found
 
 

@@ -71,7 +71,7 @@ def unit_of_steps(step: float) -> str | None:
     return None
 
 
-def _usual_period(size: float) -> float | None:
+def usual_period(size: float) -> float | None:
     """Returns the usual period of a counter that jumps by this size; None without such a period."""
     best = min(_PERIODS, key=lambda period: abs(period / size - 1))
     return best if abs(best / size - 1) < _SAME_PERIOD else None
@@ -87,8 +87,8 @@ def period_of_counter(steps: Array, span: float) -> float | None:
     jumps = np.flatnonzero(size > _JUMP * span)
     if span == 0 or not len(jumps):
         return None
-    usual = float(np.quantile(size, 0.99 if len(jumps) < 0.01 * len(size) else 0.5))
-    if usual > _SMALL * size[jumps].min():
+    usual_step = float(np.quantile(size, 0.99 if len(jumps) < 0.01 * len(size) else 0.5))
+    if usual_step > _SMALL * size[jumps].min():
         return None
     inner = jumps[(jumps > 0) & (jumps < len(size) - 1)]
     if not len(inner):
@@ -97,9 +97,9 @@ def period_of_counter(steps: Array, span: float) -> float | None:
     coming = 0.5 * (steps[inner - 1] + steps[inner + 1])
     coming[np.abs(coming) > _SMALL * span] = 0.0
     period = float(np.median(np.abs(steps[inner] - coming)))
-    usual_period = _usual_period(period)
-    if usual_period is not None:
-        return usual_period
+    usual = usual_period(period)
+    if usual is not None:
+        return usual
     # Another period is accepted only if the motion continues during each jump.
     noise = float(np.median(np.abs(np.diff(steps))))
     on = -np.sign(steps[inner]) * coming > 3 * noise
@@ -122,7 +122,7 @@ def restart(values: Array) -> Restart | None:
     jump = float(np.abs(steps, out=steps).max())
     if span == 0 or jump < _WHOLE_RANGE * span or float(np.quantile(steps, 0.9)) > _SMALL * jump:
         return None
-    return Restart(jump, _usual_period(span))
+    return Restart(jump, usual_period(span))
 
 
 @dataclass(frozen=True)

@@ -18,6 +18,7 @@ UNITS = {
     "longest": "s",
     "sample_interval": "s",
     "sample_period": "s",
+    "step": "s",
     "t": "s",
 }
 """Units of the fields of notes."""
@@ -177,6 +178,116 @@ class MissingTimes(Note):
 
 
 @dataclass(frozen=True, kw_only=True)
+class ClockStartedAgain(Note):
+    """The clock of the times is a counter, which started again after its period."""
+
+    kind: Literal["clock_started_again"] = "clock_started_again"
+    column: str  # with the times
+    times: int  # number of times that it started again
+    period: float  # in the unit of the column
+    unit: str  # of the column
+
+    @property
+    def in_words(self) -> str:
+        return (
+            f"{self.column}: the clock started again {self.times} times after "
+            f"{self.period:.10g} {self.unit}; the times were continued"
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class ClockSetBack(Note):
+    """The clock of the times stepped back, and ran on."""
+
+    kind: Literal["clock_set_back"] = "clock_set_back"
+    column: str  # with the times
+    row: int  # from 1 on, the first after the step
+    step: float  # [s]
+
+    @property
+    def in_words(self) -> str:
+        return (
+            f"{self.column}: the clock steps back by {self.step:.6g} s in row {self.row}; "
+            "the rows from there on are taken as the time after a gap"
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class NoSignal(Note):
+    """The column of a torque has one value in all rows."""
+
+    kind: Literal["no_signal"] = "no_signal"
+    port: str
+    column: str
+    value: float  # in the unit of the column
+
+    @property
+    def in_words(self) -> str:
+        return f"{self.port}: {self.column} is {self.value:g} throughout"
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlaceholderLeftOut(Note):
+    """Rows with a placeholder instead of a sample were left out."""
+
+    kind: Literal["placeholder_left_out"] = "placeholder_left_out"
+    port: str
+    column: str
+    value: float  # in the unit of the column
+    samples: int
+    share: float  # of all values of the column [1]
+    row: int  # the first, from 1 on
+
+    @property
+    def in_words(self) -> str:
+        return (
+            f"{self.port}: {self.samples} samples ({100 * self.share:.3g} %) of {self.column} are "
+            f"{self.value:g} between values far from it, first in row {self.row}; left out"
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class HeldLeftOut(Note):
+    """Rows that repeat an earlier sample while the joint moves were left out."""
+
+    kind: Literal["held_left_out"] = "held_left_out"
+    port: str
+    column: str
+    samples: int
+    share: float  # of all values of the column [1]
+    row: int  # the first, from 1 on
+
+    @property
+    def in_words(self) -> str:
+        return (
+            f"{self.port}: {self.samples} samples ({100 * self.share:.3g} %) of {self.column} "
+            f"repeat the value before while the joint moves, first in row {self.row}; left out"
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class CounterReturned(Note):
+    """A counter without a configured period jumped, and its values were joined."""
+
+    kind: Literal["counter_returned"] = "counter_returned"
+    port: str
+    column: str
+    jumps: int
+    largest: float  # jump, in the unit of the column
+    unit: str  # of the column, "" if it is the unit of the port
+    period: float | None  # size of all jumps, in the unit of the column; None if they differ
+    row: int  # the first after a jump, from 1 on
+
+    @property
+    def in_words(self) -> str:
+        return (
+            f"{self.port}: {self.column} jumps {self.jumps} times by up to "
+            f"{self.largest:.6g} {self.unit}".rstrip()
+            + f", first in row {self.row}, as a counter that starts again; the jumps were removed"
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
 class Unwrapped(Note):
     """The counter of a port started again."""
 
@@ -328,7 +439,8 @@ class FirstPart(Note):
 
 RecordingNote = Annotated[
     Encoding | RowOfUnits | LinesAboveTable | CommentsLeftOut | RepeatedName | ShortRow
-    | Rows | NoTimeColumn | RepeatedTimes | MissingTimes
+    | Rows | NoTimeColumn | RepeatedTimes | MissingTimes | ClockStartedAgain | ClockSetBack
+    | NoSignal | PlaceholderLeftOut | HeldLeftOut | CounterReturned
     | Unwrapped | Delayed | Interpolated | FasterThanTicks | BetweenTicks | MissingSamples
     | CounterInGap | CounterAtStart | SkippedTicks | FirstPart,
     Field(discriminator="kind"),

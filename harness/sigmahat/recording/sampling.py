@@ -13,27 +13,39 @@ from numpy.typing import NDArray
 
 from sigmahat.recording.configuration import Configuration, Port, Time
 from sigmahat.recording.counters import Unwrapping, WholePeriods
+from sigmahat.recording.false_samples import false_samples, returns
 from sigmahat.recording.gaps import refused, stretches
 from sigmahat.recording.log import Array, Log, LogError
 from sigmahat.recording.notes import (
     BetweenTicks,
     CounterAtStart,
     CounterInGap,
+    CounterReturned,
     Delayed,
     FasterThanTicks,
+    HeldLeftOut,
     Interpolated,
     MissingSamples,
+    NoSignal,
+    PlaceholderLeftOut,
     RecordingNote,
     Rows,
     SkippedTicks,
     Unwrapped,
 )
-from sigmahat.recording.resampling import AT_TICK, Resampled, resample
+from sigmahat.recording.resampling import (
+    AT_TICK,
+    Resampled,
+    resample,
+    usual_gap,
+    with_tolerance,
+)
 from sigmahat.recording.times import times_of
 from sigmahat.recording.units import Conversion
 
 _MOST_TICKS = 5_000_000
 _MOST_TICKS_OF_MANY_ROWS = 20  # ticks per row; limits memory by the size of the log
+_SLOW = 1.5  # ratio of the time between samples to T from which values must be interpolated
 _MOST_TICKS_PER_ROW = 200  # with more, the unit of the time is wrong
 
 
@@ -151,7 +163,7 @@ def _port_at_ticks(
 
     t  times of the column since the first tick [s]
     """
-    column = _column(log, name, port, len(t), notes)
+    column, missing = _column(log, name, port, t, notes)
     if port.delay:
         t = t - port.delay
         notes.append(Delayed(port=name, delay=port.delay))
@@ -160,28 +172,91 @@ def _port_at_ticks(
             f"port {name}: its column has no numbers; name another column, or remove the port"
         )
     resampled = resample(t, column, T, ticks, time.longest_gap)
-    notes += _notes_on(name, resampled, len(t), T)
+    longest, interval = time.longest_gap, resampled.interval
+    if longest is not None and interval > max(with_tolerance(longest), _SLOW * T):
+        raise LogError(
+            f"port {name}: time.longest_gap is {longest:g} s, but its samples are {interval:.3g} s "
+            f"apart; remove longest_gap, or set it to {usual_gap(interval):.3g}"
+        )
+    notes += _notes_on(name, resampled, missing, T)
     return resampled.values
 
 
-def _column(log: Log, name: str, port: Port, times: int, notes: list[RecordingNote]) -> Array:
-    """Reads a column in the unit of its port, and checks the number of samples."""
+def _column(
+    log: Log, name: str, port: Port, t: Array, notes: list[RecordingNote]
+) -> tuple[Array, int]:
+    """Reads a column in the unit of its port, and checks the number of samples.
+
+    Returns its values, nan where a sample is missing or false, and the number of samples that are
+    missing in the log.
+
+    t  times of the column since the first tick [s]
+    """
     values = log.read(port.column)
-    if len(values) != times:
+    if len(values) != len(t):
         raise LogError(
             f"{log.path}: column {port.column!r} has {len(values)} samples, its time column "
-            f"{times}; name the right time column in ports.{name}.time"
+            f"{len(t)}; name the right time column in ports.{name}.time"
         )
+    missing = len(values) - int(np.count_nonzero(np.isfinite(t) & np.isfinite(values)))
+    values = _without_false(values, name, port, t, notes)
     if port.wrap is not None:
         unwrapping = Unwrapping(port.wrap)
         values = unwrapping.unwrap(values)
         unit = port.unit or ""
         notes.append(Unwrapped(port=name, jumps=unwrapping.jumps, period=port.wrap, unit=unit))
-    return Conversion.of(name, port).apply(values)
+    return Conversion.of(name, port).apply(values), missing
 
 
-def _notes_on(name: str, resampled: Resampled, rows: int, T: float) -> Iterator[RecordingNote]:
-    """Yields notes on the values of a port with this number of rows at the ticks."""
+def _without_false(
+    values: Array, name: str, port: Port, t: Array, notes: list[RecordingNote]
+) -> Array:
+    """Returns the values of a column without false samples and jumps, with notes on both.
+
+    t  times of the column since the first tick [s]
+    """
+    is_position = name in ("theta", "q")
+    if name in ("tau", "tau_e_sensor"):
+        low, high = np.fmin.reduce(values), np.fmax.reduce(values)  # which ignore nan
+        if low == high:
+            notes.append(NoSignal(port=name, column=port.column, value=float(low)))
+            return values
+    false = false_samples(values, is_position, port.wrap)
+    for placeholder in false.placeholders:
+        number, first = len(placeholder.rows), placeholder.first + 1
+        share = number / len(values)
+        value = placeholder.value
+        notes.append(
+            PlaceholderLeftOut(
+                port=name, column=port.column, value=value, samples=number, share=share, row=first
+            )
+        )
+    if false.held is not None:
+        number, first = len(false.held), int(false.held[0]) + 1
+        share = number / len(values)
+        notes.append(
+            HeldLeftOut(port=name, column=port.column, samples=number, share=share, row=first)
+        )
+    values = false.left_out(values)
+    jumps = returns(values, t) if is_position and port.wrap is None else None
+    if jumps is None:
+        return values
+    notes.append(
+        CounterReturned(
+            port=name,
+            column=port.column,
+            jumps=len(jumps.rows),
+            largest=float(np.abs(jumps.offsets).max()),
+            unit=port.unit or "",
+            period=jumps.period,
+            row=int(jumps.rows[0]) + 1,
+        )
+    )
+    return jumps.joined(values)
+
+
+def _notes_on(name: str, resampled: Resampled, missing: int, T: float) -> Iterator[RecordingNote]:
+    """Yields notes on the values of a port at the ticks, with this number of missing samples."""
     interval = resampled.interval
     if resampled.interpolated:
         apart = None if resampled.is_even else interval
@@ -190,9 +265,11 @@ def _notes_on(name: str, resampled: Resampled, rows: int, T: float) -> Iterator[
         yield FasterThanTicks(port=name, sample_interval=interval)
     elif resampled.is_even and resampled.between:
         yield BetweenTicks(port=name, samples=resampled.between)
-    missing = rows - resampled.samples
     if missing and abs(interval / T - 1) < 0.5:
-        yield MissingSamples(port=name, samples=missing)
+        # Rows of other signals have no sample of this port either, but none is missing.
+        lost = len(resampled.values) * T / interval - resampled.samples
+        if lost > 0.5 * missing:
+            yield MissingSamples(port=name, samples=missing)
 
 
 def _put_right(values: Array, configuration: Configuration, T: float) -> Iterator[RecordingNote]:

@@ -180,7 +180,13 @@ def _plus_minus(branch: Branch) -> str:
         return f"{sigma:.4g}"
     half = (interval[1] - interval[0]) / 2
     text = f"{sigma:.4g} +- {half:.3g}"
-    return text if half < abs(sigma) else f"cannot tell ({text})"
+    return text if is_told(branch) else f"cannot tell ({text})"
+
+
+def is_told(branch: Branch) -> bool:
+    """Returns whether the interval of the stiffness in the middle of the data excludes 0."""
+    _, sigma, interval = stiffness_in_the_middle(branch)
+    return interval is None or (interval[1] - interval[0]) / 2 < abs(sigma)
 
 
 def stiffness_in_the_middle(branch: Branch) -> tuple[float, float, Range | None]:

@@ -16,7 +16,7 @@ from sigmahat.fmi.series import Series
 from sigmahat.recording import notes
 from sigmahat.recording.configuration import Configuration
 from sigmahat.recording.log import Log
-from sigmahat.recording.notes import RecordingNote
+from sigmahat.recording.notes import NoSignal, RecordingNote
 from sigmahat.recording.replay import OUTPUTS
 from sigmahat.result import sheet
 from sigmahat.result.curve import (
@@ -24,6 +24,7 @@ from sigmahat.result.curve import (
     Curve,
     curve_text,
     headline,
+    is_told,
     stiffness_in_the_middle,
     stiffness_points,
     write_curve,
@@ -96,6 +97,12 @@ class Estimate:
     @property
     def headline(self) -> str:
         """The stiffness in one line."""
+        for note in self.notes:
+            if isinstance(note, NoSignal) and not any(map(is_told, self.curve.branches)):
+                return (
+                    f"cannot tell: the torque is {note.value:g} throughout ({note.column}); "
+                    "choose another column, or record with the motor on"
+                )
         return headline(self.curve, self.doubt_at_end)
 
     def as_dict(self) -> dict[str, Any]:

@@ -239,8 +239,9 @@ def start_values(estimator: Estimator) -> dict[str, Value]:
     start |= {"rls.n": n, "rls.m": m}
     for name in ("B", "D_theta"):
         value = estimator.output(f"{name}_hat")
-        if value > 0:  # the FMU refuses other values, and `doubt` reports such values
-            start[f"motor.{name}"] = value
+        least = float(model.variable(f"motor.{name}").min or 0.0)
+        if value > 0 and value >= least:
+            start[f"motor.{name}"] = value  # the FMU refuses others, and `doubt` reports them
     for name, (i, j) in at.items():
         if i < n and j < m:
             start[f"{_CURVE}{i},{j}]"] = values[name]
