@@ -40,6 +40,7 @@ from sigmahat.result.curve import (
 )
 from sigmahat.result.curve_of_log import POINTS, MeasuredPoints, reaches, read_points
 from sigmahat.result.estimate import Estimate, estimate
+from sigmahat.result.headline import Confidence, headline
 from sigmahat.result.log_panels import curve_panels
 from sigmahat.result.sheet import Polynomial, start_of, with_knees
 from sigmahat.result.stored import LearnedLog

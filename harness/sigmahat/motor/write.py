@@ -48,13 +48,14 @@ def update(document: tomlkit.TOMLDocument, identified: Identified, joint: str = 
     section = several_joints.section(document, joint)
     whole = several_joints.of_joint(document, joint)
     given = dict(toml_file.dotted(whole.get("parameters", tomlkit.table()).unwrap()))
+    bandwidth = identified.bandwidth
     values: dict[str, Any] = {
         "filter.V_a": identified.V_a,
         "rls.symmetric": identified.symmetric,
         "rls.n": identified.n,
         "rls.m": identified.m,
-        "noise.tau": math.sqrt(identified.tau_variance),
-        "regression.bandwidth": _ABOVE * identified.bandwidth,
+        _noise_key(identified): math.sqrt(identified.tau_variance),
+        "regression.bandwidth": None if bandwidth is None else _ABOVE * bandwidth,
         "range.phi": _ROOM * identified.phi,
         "range.setPoint": _ROOM * identified.set_point,
         "range.setPoint_center": identified.set_point_center,
@@ -75,7 +76,7 @@ def update(document: tomlkit.TOMLDocument, identified: Identified, joint: str = 
     values = {
         name: value
         for name, value in values.items()
-        if name not in kept and (value is False or value != 0)
+        if value is not None and name not in kept and (value is False or value != 0)
     }
     parameters = section.setdefault("parameters", tomlkit.table())
     unknown = {n: value for n, value in _unknown(identified).items() if n not in given}
@@ -101,6 +102,10 @@ def update(document: tomlkit.TOMLDocument, identified: Identified, joint: str = 
         written.append("ports.q.zero")
     section["identified"] = _record(identified)
     return written
+
+
+def _noise_key(identified: Identified) -> str:
+    return "noise.tau_e" if identified.has_sensor else "noise.tau"
 
 
 def _unknown(identified: Identified) -> dict[str, tuple[float, str]]:
@@ -199,7 +204,8 @@ def _record(identified: Identified) -> tomlkit.items.Table:
     table["tau_noise"].comment("standard deviation [N.m]")
     table["theta_noise"] = float(f"{identified.theta_variance**0.5:.3g}")
     table["theta_noise"].comment("standard deviation, rounding included [rad]")
-    table["bandwidth"] = float(f"{identified.bandwidth:.4g}")
-    table["bandwidth"].comment("of a filter that balances both [rad/s]")
+    if identified.bandwidth is not None:
+        table["bandwidth"] = float(f"{identified.bandwidth:.4g}")
+        table["bandwidth"].comment("of a filter that balances both [rad/s]")
     table.add(tomlkit.nl())
     return table
