@@ -15,7 +15,8 @@ from sigmahat.fmi.model import Value
 from sigmahat.motor.coherence import is_hidden, pass_band
 from sigmahat.motor.equation import Form
 from sigmahat.motor.log_view import LogView, first_part
-from sigmahat.motor.motor_fit import KnownInertia, MotorFit, fit_motor, fit_spring
+from sigmahat.motor.inertia import KnownInertia
+from sigmahat.motor.motor_fit import MotorFit, fit_motor, fit_spring
 from sigmahat.motor.motor_notes import ContradictedInertia, HiddenInertia, NoTorque, SpringChanges
 from sigmahat.motor.noise import count, is_only_noise, low_pass
 from sigmahat.motor.quantities import Identified, Quantity

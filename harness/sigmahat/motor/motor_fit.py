@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sigmahat.fmi.model import Value
 from sigmahat.motor import equation
 from sigmahat.motor.equation import MOTOR, Choice, Fit, Form
 from sigmahat.motor.friction import frictions, slower, with_all_columns
-from sigmahat.motor.log_view import LogView
-from sigmahat.motor.quantities import WIDE, Quantity
+from sigmahat.motor.inertia import KnownInertia
+from sigmahat.motor.quantities import Quantity
 from sigmahat.motor.signals import Signals, set_point_moves
 from sigmahat.motor.spring import SpringFit, is_narrow
-from sigmahat.recording.configuration import Configuration
 
 _UNITS = {"B": "kg.m2", "D_theta": "N.m.s/rad", "tau_coulomb": "N.m"}
 _RELATIVE = 0.1  # largest half width of a determined value, relative to the value
@@ -26,41 +24,7 @@ _POWERS = 4
 interval of the stiffness is a quarter wider; with 3, the interval contains fewer true curves."""
 _SAMPLING = {"B": 0.015, "tau_coulomb": 0.015, "D_theta": 0.001}
 """Relative errors without noise, because reversals happen between samples of period 1 ms."""
-_ENDS = (0.0, -1.96, 1.96)  # mean and interval ends of a known inertia, in standard deviations
-_FAR = 5.0  # largest plausible error of a known B, in standard deviations
-_ANOTHER = 0.5  # smallest relative error of B that suggests a wrong scale of the torque
 _N, _M = 4, 4  # highest orders of the polynomial that are tried
-
-
-def is_inertia_given(configuration: Configuration, parameters: Mapping[str, Value]) -> bool:
-    """Returns whether the configuration gives B, and not with the wide prior of an unknown B.
-
-    parameters  all parameters of the estimator
-    """
-    return "motor.B" in configuration.parameters and float(parameters["prior.B"]) < WIDE
-
-
-@dataclass(frozen=True)
-class KnownInertia:
-    """The inertia B from the configuration, with its uncertainty."""
-
-    value: float  # [kg.m2]
-    std: float  # standard deviation of the relative error of B, > 0
-
-    @staticmethod
-    def of(view: LogView) -> KnownInertia | None:
-        """Returns the inertia of a configuration, if it is given with a prior above 0."""
-        std = float(view.parameters["prior.B"])
-        if not is_inertia_given(view.configuration, view.parameters) or not std > 0:
-            return None
-        return KnownInertia(float(view.parameters["motor.B"]), std)
-
-    def contradicts(self, found: Quantity) -> bool:
-        """Returns whether the error of B is so large that the scale of the torque may be wrong. A
-        wrong torque constant or gear ratio changes B and the stiffness by the same factor.
-        """
-        most = self.value * max(_FAR * self.std, _ANOTHER)
-        return abs(found.value - self.value) - found.half_width > most
 
 
 @dataclass(frozen=True)
@@ -218,7 +182,7 @@ def _variants(
     widest = with_all_columns(form)
     whole, names = equation.equations(pieces, T, gamma, widest), set(widest.names(sensor))
 
-    ends = [] if inertia is None else [inertia.value * (1 + k * inertia.std) for k in _ENDS]
+    ends = [] if inertia is None else [inertia.value, *inertia.interval]
 
     def fits_of(other: Form) -> list[Fit]:
         """Fits with an unknown B, then with the known B and with both ends of its interval."""
