@@ -14,8 +14,8 @@ from sigmahat.estimator.estimator import Estimator
 from sigmahat.fmi.model import Value
 from sigmahat.motor.coherence import is_hidden, pass_band
 from sigmahat.motor.equation import Form
-from sigmahat.motor.log_view import LogView, first_part
 from sigmahat.motor.inertia import KnownInertia
+from sigmahat.motor.log_view import LogView, first_part
 from sigmahat.motor.motor_fit import MotorFit, fit_motor, fit_spring
 from sigmahat.motor.motor_notes import ContradictedInertia, HiddenInertia, NoTorque, SpringChanges
 from sigmahat.motor.noise import count, is_only_noise, low_pass
@@ -86,9 +86,7 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
     return _identify_motor(view, start, torque_constant)
 
 
-def _identify_motor(
-    view: LogView, start: Mapping[str, Value], torque_constant: bool
-) -> Identified:
+def _identify_motor(view: LogView, start: Mapping[str, Value], torque_constant: bool) -> Identified:
     samples, pieces, T, gamma = view.samples, view.pieces, view.T, view.gamma
     band = pass_band(view, has_sensor=torque_constant)
     noise = band.noise
@@ -120,14 +118,16 @@ def _identify_motor(
     if torque_constant and nominal is not None:
         quantities["torque_constant"] = motor.torque_constant(nominal)
     found = _of_positions(view, motor.polynomial, quantities.get("zero"))
+    # One spring for the whole log cannot be coherent with the torque if the spring changes.
+    coherent = band.coherent if change is None else math.inf
     is_plain = not (no_torque or hidden or change is not None)
     return replace(
         found,
         quantities=quantities,
         tau_variance=noise.torque,
         theta_variance=noise.position,
-        bandwidth=2 * math.pi * min(bandwidth, band.coherent, _RESOLVED / samples.T),
-        coherent=band.coherent,
+        bandwidth=2 * math.pi * min(bandwidth, coherent, _RESOLVED / samples.T),
+        coherent=coherent,
         V_a=_best_V_a(T, start, view.longest, noise.bandwidth),
         knees=knees(thinned, h, gamma, motor.polynomial, found.zero) if is_plain else (),
         torque=0.0 if no_torque else _largest_torque(view, motor.spring),

@@ -196,7 +196,9 @@ def with_free_inertia(view: LogView, form: Form) -> Fit:
 
 def with_damped_spring(view: LogView, form: Form) -> Fit:
     """Fits the motor equation with a spring whose torque also has a damping."""
-    pieces = [replace(piece, extra=np.gradient(piece.phi, view.T)[:, None]) for piece in view.pieces]
+    pieces = [
+        replace(piece, extra=np.gradient(piece.phi, view.T)[:, None]) for piece in view.pieces
+    ]
     return with_form(replace(view, pieces=pieces), form)
 
 
@@ -231,7 +233,7 @@ def _equations(view: LogView, form: Form) -> Equations:
     low, high = inertia.interval
     if not half_width < (high - low) / 2:
         return system.known("B", inertia.value)  # the prior says more than the log
-    return system if low < B < high else system.known("B", low if B < low else high)
+    return system if low < B < high else system.known("B", low if low > B else high)
 
 
 def _free_equations(view: LogView, form: Form) -> Equations:

@@ -115,7 +115,7 @@ def _unknown(identified: Identified) -> dict[str, tuple[float, str]]:
     for name, given in (("B", identified.B), ("D_theta", identified.D_theta)):
         quantity = identified.quantities.get(name)
         if quantity is not None and not quantity.determined:
-            low, high = quantity.interval
+            low, high = quantity.fitted
             is_held = math.isfinite(high) and high > 0
             value = 0.5 * (max(low, 0.0) + high) if is_held else given
             values[f"motor.{name}"] = (value, _MIDDLE if is_held else NOT_YOURS)
@@ -139,11 +139,11 @@ def _wide_priors(identified: Identified, comments: Mapping[str, str]) -> dict[st
         D_theta = None
     if D_theta is not None and math.isfinite(D_theta.half_width) and identified.D_theta > 0:
         # Encoders that are read at different times look like positive or negative friction.
-        largest = max(abs(end / identified.D_theta - 1) for end in D_theta.interval)
+        largest = max(abs(end / identified.D_theta - 1) for end in D_theta.fitted)
         priors["prior.D_theta"] = max(priors["prior.D_theta"], largest)
     tau_coulomb = undetermined.get("tau_coulomb")
     if tau_coulomb is not None:
-        largest = max(abs(end) for end in tau_coulomb.interval)
+        largest = max(abs(end) for end in tau_coulomb.fitted)
         priors["prior.tau_coulomb"] = largest if math.isfinite(largest) else ANY_COULOMB
     return priors
 

@@ -151,6 +151,8 @@ _FAMILY_HEAD = (
     *("setPoint", "phi from [rad]", "to [rad]"),
     *("sigma half way down", "in the middle [N.m/rad]", "half way up"),
 )
+
+
 def stiffness_in_the_middle(branch: Branch) -> tuple[float, float, Range | None]:
     """Returns the deformation in the middle [rad], and stiffness and interval there [N.m/rad]."""
     phi = characteristic(branch.reach)[1]

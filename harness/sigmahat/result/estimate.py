@@ -31,8 +31,8 @@ from sigmahat.result.curve import (
 from sigmahat.result.curve_of_log import POINTS, Answer, write_points
 from sigmahat.result.data_sheet import MOTOR, UNITS, WORDS, data_sheet, priors
 from sigmahat.result.estimate_table import MCAP, REPLAYED, EstimateWriter, Replayed, mcap_file
-from sigmahat.result.learned import LEARNED, read_learned, write_learned
 from sigmahat.result.headline import Confidence, StiffnessChange, headline
+from sigmahat.result.learned import LEARNED, read_learned, write_learned
 from sigmahat.result.replayed_log import Replay
 
 _MOTOR = ("D_theta_hat", "B_hat", "tau_coulomb_hat")

@@ -62,9 +62,7 @@ class Confidence:
         return f"not confident for {100 * doubted:.3g} % of the second half ({self.doubt})"
 
 
-def headline(
-    curve: Curve, confidence: Confidence, changes: Sequence[StiffnessChange] = ()
-) -> str:
+def headline(curve: Curve, confidence: Confidence, changes: Sequence[StiffnessChange] = ()) -> str:
     """Formats stiffness and 95 % interval in one line, for each setting of a variable stiffness."""
     if not curve.branches:
         return "no stiffness: the estimator used no sample of the log"
