@@ -15,8 +15,10 @@ from sigmahat.recording.several_joints import of_joint
 COUNTS = 16384
 
 
-def each_joint_has_its_own_files(shell: Shell) -> None:
+def each_joint_has_its_own_files(shell: Shell, page: str) -> None:
     """Reports have the names of the joints, and `export` takes the folder of both."""
+    assert "leg.csv with leg.toml; sigmahat " in page
+    assert '<a href="knee/report.html">knee: ' in page
     of_knee = Path("sigmahat-results/leg/knee/report.html").read_text(encoding="utf-8")
     assert "<title>Joint knee</title>" in of_knee
     shell.run("export sigmahat-results/leg --to mjcf")
@@ -66,9 +68,7 @@ def test_from_the_log_to_one_report(shell: Shell) -> None:
     page = Path("sigmahat-results/leg/report.html").read_text(encoding="utf-8")
     assert "hip: Stiffness against deformation" in page
     assert "knee: Stiffness against deformation" in page
-    assert "leg.csv with leg.toml; sigmahat " in page
-    assert '<a href="knee/report.html">knee: ' in page
-    each_joint_has_its_own_files(shell)
+    each_joint_has_its_own_files(shell, page)
     # THEN `validate` reports for both joints that their results come from the same log
     said = shell.run("validate leg.csv --with leg.toml", 1)
     assert said.count("learned before from leg.csv") == 2

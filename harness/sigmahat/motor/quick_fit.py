@@ -24,7 +24,6 @@ _SLOWEST = 0.1  # largest sample period that still shows the motion of a joint [
 _ORDERS = 3
 _PARTS = 8  # number of parts of a log; each may have another spring
 _SPARE = 6  # least number of blocks of a part in addition to the number of its columns
-_CLEAR = 3.0  # least number of half intervals between 0 and a clear value
 _STEPS = 4  # number of steps of Newton's method for the delay
 LONGEST_DELAY = 0.1  # [s]
 
@@ -67,15 +66,6 @@ class QuickFit:
         scores = _scores(self.free)
         signs = [np.sign(scores[name]) for name in MOTOR if abs(scores.get(name, 0.0)) > 1]
         return float(np.sign(sum(signs)))
-
-    @property
-    def is_driven_backwards(self) -> bool:
-        """Whether both frictions of the motor are clearly negative, as by a torque of wrong sign,
-        and the stiffness is not clearly positive: in slow motion, only friction shows the sign."""
-        scores = self.scores
-        frictions = [scores.get(name, 0.0) for name in ("D_theta", "tau_coulomb")]
-        stiffness = -np.sign(self.view.gamma) * scores.get(LINEAR, 0.0)
-        return all(score < -_CLEAR for score in frictions) and bool(stiffness < _CLEAR)
 
 
 def _scores(fit: Fit) -> dict[str, float]:

@@ -92,8 +92,6 @@ def compare_torque(positions: Positions) -> TorqueEvidence:
         return TorqueEvidence(gear=gear)
     if -np.sign(view.gamma) * fit.scores[LINEAR] < -1:
         return _negative_stiffness(view, fit)
-    if fit.is_driven_backwards:
-        return TorqueEvidence(sign=_other_sign(view, fit))
     zero = _zero(view, fit)
     asymmetry = None if zero is not None else _asymmetry(view, fit)
     if view.has_sensor:
