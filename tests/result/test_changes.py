@@ -11,7 +11,8 @@ from command_line import Shell
 from recorded_logs import REGRESSION, read_estimate, recorded, write_log
 from regression_joint import Joint
 from sigmahat.result.curve_of_log import since_change
-from sigmahat.result.replayed_log import Changes, StiffnessChange
+from sigmahat.result.headline import StiffnessChange
+from sigmahat.result.replayed_log import Changes
 
 MARKS = """
 return [...Bokeh.documents[0]._all_models.values()]

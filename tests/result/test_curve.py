@@ -34,13 +34,13 @@ from sigmahat.result.curve import (
     Branch,
     Curve,
     curve_text,
-    headline,
     nearest,
     polynomial_in_words,
     read_curve,
 )
 from sigmahat.result.curve_of_log import POINTS, MeasuredPoints, reaches, read_points
 from sigmahat.result.estimate import Estimate, estimate
+from sigmahat.result.headline import Confidence, headline
 from sigmahat.result.log_panels import curve_panels
 from sigmahat.result.sheet import Polynomial, start_of, with_knees
 from sigmahat.result.stored import LearnedLog
@@ -302,4 +302,4 @@ def test_an_interval_wider_than_the_stiffness_tells_nothing(std: float, text: st
     spring = 200.0 + 0 * phi
     branch = Branch(0.0, (-0.1, 0.1), phi, spring * phi, std * phi, spring, std + 0 * phi)
     curve = Curve(Polynomial([1], [0], [[200.0]], [["N.m/rad"]], None, None), [branch])
-    assert headline(curve, "None") == f"{text} at 0 rad, confident"
+    assert headline(curve, Confidence("None", {"None": 1.0})) == f"{text} at 0 rad, confident"

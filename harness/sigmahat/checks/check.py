@@ -14,8 +14,8 @@ from sigmahat.checks.text import DOUBTS
 from sigmahat.fmi.model import Value, installed_model
 from sigmahat.motor.hypotheses.hypothesis import with_value
 from sigmahat.motor.hypotheses.positions import compare_positions
+from sigmahat.motor.inertia import is_inertia_given
 from sigmahat.motor.log_view import LogView, liveliest_part
-from sigmahat.motor.motor_fit import is_inertia_given
 from sigmahat.motor.noise import variance
 from sigmahat.motor.quantities import WIDE
 from sigmahat.recording.configuration import PORTS, Configuration

@@ -102,8 +102,9 @@ def _of_zero(view: LogView, zero: Zero) -> Iterator[Finding]:
 
 
 def _of_torque_delay(view: LogView, delay: Delay) -> Finding:
-    if delay.least < _STD * float(view.parameters["prior.delay"]):
-        # A delay within prior.delay is no error: damping of the spring looks like an early torque.
+    is_within_prior = delay.least < _STD * float(view.parameters["prior.delay"])
+    if delay.measured < 0 or is_within_prior:
+        # No key is wrong: damping and hysteresis of the spring look like an early torque, too.
         key = delay.hypotheses[0].key
         return Finding(Kind.TORQUE_LAG, Severity.NOTE, key, delay.measured, "s", 0.0)
     return finding(Kind.TORQUE_LAG, Severity.WRONG, delay, "s", 0.0)

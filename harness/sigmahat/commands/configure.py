@@ -63,9 +63,7 @@ def _text(log: Path, joints: Mapping[str, JointGuess], path: Path) -> str:
     option = "" if path == common.configuration_of(log) else f" --config {path}"
     values = "value" if asked == 1 else "values"
     fill_in = f"fill in {asked} {values} (FILL IN)" if asked else "nothing to fill in"
-    by_sensor = all("tau" not in each.ports for each in joints.values())
-    then = "estimate" if by_sensor and "tau_e_sensor" in text else "identify"
-    lines += [f"Check {path}, {fill_in}, then: sigmahat {then} {log}{option}"]
+    lines += [f"Check {path}, {fill_in}, then: sigmahat identify {log}{option}"]
     return "\n".join(lines)
 
 

@@ -173,18 +173,39 @@ def export(sheet: Path, to: str, out: Path | None, force: bool) -> None:
 
     SHEET is the joint.json that `sigmahat estimate` wrote, or its folder. An FMU with these start
     values begins with the estimated stiffness. The joint has two hinges, motor and
-    flexibility, with the intervals of all parameters.
+    flexibility, with the intervals of all parameters. A folder of several joints gives a file in
+    the folder of each joint.
     """
+    from sigmahat.result.estimate import JOINTS, read_joints
+    from sigmahat.result.sheet import FORMAT
+
+    common.need_fmus("StiffnessEstimator")
+    sheets = [sheet]
+    if (sheet / JOINTS).is_file():
+        with common.errors_in_one_line(sheet, "SHEET"):
+            names, _ = read_joints(sheet)
+        if out is not None:
+            raise click.UsageError(
+                f"--out FILE is for one joint, and {sheet} has {', '.join(names)}: omit --out, or "
+                f"name one of them, such as {sheet / names[0]}"
+            )
+        sheets = [sheet / name for name in names]
+    paths = [out or FORMAT.path(each).with_suffix(_SUFFIXES[to]) for each in sheets]
+    for path in paths:
+        common.refuse_to_overwrite(path, force, "--out")
+    for each, path in zip(sheets, paths, strict=True):
+        _exported(each, to, path)
+
+
+def _exported(sheet: Path, to: str, path: Path) -> None:
+    """Writes the file of one joint, and says so."""
     from sigmahat.fmi.model import installed_model
     from sigmahat.result import parameter_file
     from sigmahat.result.robot_model import write_model
     from sigmahat.result.sheet import FORMAT
 
-    common.need_fmus("StiffnessEstimator")
-    path = out or FORMAT.path(sheet).with_suffix(_SUFFIXES[to])
     with common.errors_in_one_line(path, "--out FILE"):
         contents = FORMAT.read(sheet)
-        common.refuse_to_overwrite(path, force, "--out")
         if to in _MODELS:
             write_model(contents, to, path)
             text = f"{path.resolve()} has the joint, as two hinges; its link is a placeholder"
@@ -201,13 +222,18 @@ def export(sheet: Path, to: str, out: Path | None, force: bool) -> None:
 def report(folder: Path, out: Path | None) -> None:
     """Make one HTML file of the results in FOLDER, with plots to zoom.
 
-    FOLDER is what `sigmahat reproduce`, `estimate` or `sweep` wrote. The file opens offline.
+    FOLDER is what `sigmahat reproduce`, `estimate` or `sweep` wrote. The file opens offline. For
+    several joints, each joint gets a report in its own folder, too.
     """
     from sigmahat.files.output import write_whole
+    from sigmahat.report.contents import REPORT
+    from sigmahat.report.page import joints_of
     from sigmahat.report.page import report as make
 
-    out = out or folder / "report.html"
+    out = out or folder / REPORT
     with common.errors_in_one_line(out, "--out FILE"):
-        text = make(folder)
+        for joint in joints_of(folder):
+            write_whole(make(joint, joint / REPORT), joint / REPORT)
+        text = make(folder, out)
         write_whole(text, out)
     common.answer(f"{out.resolve()} ({len(text.encode()) / 1e6:.1f} MB)")

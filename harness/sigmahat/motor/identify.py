@@ -13,8 +13,10 @@ import numpy as np
 from sigmahat.estimator.estimator import Estimator
 from sigmahat.fmi.model import Value
 from sigmahat.motor.coherence import is_hidden, pass_band
-from sigmahat.motor.log_view import first_part
-from sigmahat.motor.motor_fit import KnownInertia, MotorFit, fit_motor
+from sigmahat.motor.equation import Form
+from sigmahat.motor.inertia import KnownInertia
+from sigmahat.motor.log_view import LogView, first_part
+from sigmahat.motor.motor_fit import MotorFit, fit_motor, fit_spring
 from sigmahat.motor.motor_notes import ContradictedInertia, HiddenInertia, NoTorque, SpringChanges
 from sigmahat.motor.noise import count, is_only_noise, low_pass
 from sigmahat.motor.quantities import Identified, Quantity
@@ -64,7 +66,8 @@ def _unusable(samples: Samples, needed: float) -> str:
 
 
 def identify(log: Log, configuration: Configuration, torque_constant: bool = False) -> Identified:
-    """Identifies the motor of a log.
+    """Identifies the motor of a log. With modality Sensor, the log needs no motor: noise, ranges
+    and orders of the spring are identified.
 
     With torque_constant, the torque constant K_t is identified too. In this case tau must be a
     current, and the torque of the sensor is taken as exact.
@@ -72,12 +75,19 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
     Raises LogError for a log and configuration that do not fit, or a log without a stretch that is
     long enough.
     """
-    _check(configuration, torque_constant)
     start = parameters(configuration)
-    view = first_part(log, configuration, sensor=torque_constant)
+    is_of_spring = start.get("modality") == "Sensor" and not torque_constant
+    _check(configuration, is_of_spring, torque_constant)
+    view = first_part(log, configuration, both_torques=torque_constant)
+    if view.T > _SLOWEST or not view.pieces:
+        raise LogError(f"{log.path}: {_unusable(view.samples, shortest(view.T) * view.T)}")
+    if is_of_spring:
+        return _identify_spring(view)
+    return _identify_motor(view, start, torque_constant)
+
+
+def _identify_motor(view: LogView, start: Mapping[str, Value], torque_constant: bool) -> Identified:
     samples, pieces, T, gamma = view.samples, view.pieces, view.T, view.gamma
-    if T > _SLOWEST or not pieces:
-        raise LogError(f"{log.path}: {_unusable(samples, shortest(T) * T)}")
     band = pass_band(view, has_sensor=torque_constant)
     noise = band.noise
     bandwidth = noise.bandwidth
@@ -104,40 +114,79 @@ def identify(log: Log, configuration: Configuration, torque_constant: bool = Fal
         }
     if quantities["B"].determined:  # the first bandwidth was computed with the configured B
         bandwidth = replace(noise, inertia=quantities["B"].value * abs(gamma)).bandwidth
-    if torque_constant and (nominal := configuration.ports["tau"].torque_constant) is not None:
+    nominal = view.configuration.ports["tau"].torque_constant
+    if torque_constant and nominal is not None:
         quantities["torque_constant"] = motor.torque_constant(nominal)
-    spring = motor.spring if math.isfinite(motor.spring) else 0.0
-    center = _center(quantities.get("zero"), pieces)
-    middle, set_point = _set_points(pieces, has_effect=motor.polynomial.m > 1)
-    return Identified(
+    found = _of_positions(view, motor.polynomial, quantities.get("zero"))
+    # One spring for the whole log cannot be coherent with the torque if the spring changes.
+    coherent = band.coherent if change is None else math.inf
+    is_plain = not (no_torque or hidden or change is not None)
+    return replace(
+        found,
         quantities=quantities,
-        symmetric=motor.polynomial.symmetric,
-        n=motor.polynomial.n,
-        m=motor.polynomial.m,
         tau_variance=noise.torque,
         theta_variance=noise.position,
-        bandwidth=2 * math.pi * min(bandwidth, band.coherent, _RESOLVED / samples.T),
-        coherent=band.coherent,
+        bandwidth=2 * math.pi * min(bandwidth, coherent, _RESOLVED / samples.T),
+        coherent=coherent,
         V_a=_best_V_a(T, start, view.longest, noise.bandwidth),
-        phi=max(float(np.max(np.abs(piece.phi - center))) for piece in pieces),
-        zero=center,
-        knees=()
-        if no_torque or hidden or change is not None
-        else knees(thinned, h, gamma, motor.polynomial, center),
-        set_point=set_point,
-        set_point_center=middle,
-        set_point_moves=set_point_moves(pieces),
-        torque=0.0
-        if no_torque
-        else max(spring, *(abs(gamma) * float(np.max(np.abs(piece.tau))) for piece in pieces)),
-        B=float(view.parameters["motor.B"]),
-        D_theta=float(view.parameters["motor.D_theta"]),
+        knees=knees(thinned, h, gamma, motor.polynomial, found.zero) if is_plain else (),
+        torque=0.0 if no_torque else _largest_torque(view, motor.spring),
         notes=[
             *samples.notes,
             *([] if change is None else [SpringChanges(t=change * h)]),
             *_notes(motor, inertia, no_torque, hidden),
         ],
     )
+
+
+def _identify_spring(view: LogView) -> Identified:
+    """Identifies the spring between both positions and the torque of a sensor."""
+    pieces, gamma = view.pieces, view.gamma
+    apart = _apart(pieces, count(view.parameters))
+    h = apart * view.T
+    thinned = [piece[::apart] for piece in pieces]
+    band = pass_band(view, has_sensor=True)
+    symmetric = bool(view.parameters["rls.symmetric"])
+    spring = fit_spring(thinned, h, gamma, symmetric, band.low_pass(h))
+    found = _of_positions(view, spring.polynomial, spring.zero)
+    return replace(
+        found,
+        quantities={"zero": spring.zero},
+        tau_variance=gamma**2 * band.noise.torque,
+        theta_variance=band.noise.position,
+        torque=_largest_torque(view, spring.largest),
+        notes=list(view.samples.notes),
+    )
+
+
+def _of_positions(view: LogView, polynomial: Form, zero: Quantity | None) -> Identified:
+    """Returns what the positions of a log show, without any torque."""
+    pieces = view.pieces
+    center = _center(zero, pieces)
+    middle, set_point = _set_points(pieces, has_effect=polynomial.m > 1)
+    return Identified(
+        quantities={},
+        symmetric=polynomial.symmetric,
+        n=polynomial.n,
+        m=polynomial.m,
+        phi=max(float(np.max(np.abs(piece.phi - center))) for piece in pieces),
+        zero=center,
+        set_point=set_point,
+        set_point_center=middle,
+        set_point_moves=set_point_moves(pieces),
+        has_sensor=view.has_sensor,
+        B=float(view.parameters["motor.B"]),
+        D_theta=float(view.parameters["motor.D_theta"]),
+    )
+
+
+def _largest_torque(view: LogView, spring: float) -> float:
+    """Returns the largest torque of motor or spring at the gear output [N.m].
+
+    spring  largest torque of the spring; nan if it is not known
+    """
+    measured = (abs(view.gamma) * float(np.max(np.abs(piece.tau))) for piece in view.pieces)
+    return max(spring if math.isfinite(spring) else 0.0, *measured)
 
 
 def _notes(
@@ -182,11 +231,14 @@ def _center(zero: Quantity | None, pieces: Sequence[Signals]) -> float:
     return zero.value if is_off(zero.value, zero.half_width, covered(pieces)) else 0.0
 
 
-def _check(configuration: Configuration, torque_constant: bool) -> None:
+def _check(configuration: Configuration, is_of_spring: bool, torque_constant: bool) -> None:
     """Raises LogError if a port is missing, or if tau must be a current and is not."""
-    for name in ("theta", "q", "tau", *(["tau_e_sensor"] if torque_constant else [])):
+    torques = ["tau_e_sensor"] if is_of_spring else ["tau"]
+    if torque_constant:
+        torques.append("tau_e_sensor")
+    for name in ("theta", "q", *torques):
         if name not in configuration.ports:
-            why = "; a torque constant needs a measured torque" if "sensor" in name else ""
+            why = "; a torque constant needs a measured torque" if torque_constant else ""
             raise LogError(f"{configuration.path}: identify needs [ports.{name}]{why}; add it")
     if torque_constant and configuration.ports["tau"].torque_constant is None:
         raise LogError(

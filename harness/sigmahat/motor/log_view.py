@@ -78,22 +78,27 @@ def liveliest_part(log: Log, configuration: Configuration) -> LogView:
     parameters = all_parameters(configuration)
     configuration.need_ports(str(parameters["modality"]))
     samples = _liveliest(sample(log, configuration, float(parameters["samplePeriod"])))
-    torque = "tau_e_sensor" if parameters["modality"] == "Sensor" else "tau"
-    pieces = list(signals_of(samples, parameters, torque))
+    pieces = list(signals_of(samples, parameters, _torque(parameters)))
     return LogView(log, configuration, parameters, samples, pieces)
 
 
-def first_part(log: Log, configuration: Configuration, sensor: bool) -> LogView:
+def first_part(log: Log, configuration: Configuration, both_torques: bool) -> LogView:
     """Selects the first 600 s of a log, for an identification.
 
-    sensor  whether the sensor torque is kept in addition to the motor torque
+    both_torques  whether the sensor torque is kept in addition to the motor torque, in any modality
 
     Raises LogError if log and configuration do not fit.
     """
     parameters = all_parameters(configuration)
     samples = _beginning(sample(log, configuration, float(parameters["samplePeriod"])))
-    pieces = list(signals_of(samples, parameters, sensor=sensor))
+    torque = "tau" if both_torques else _torque(parameters)
+    pieces = list(signals_of(samples, parameters, torque, sensor=both_torques))
     return LogView(log, configuration, parameters, samples, pieces)
+
+
+def _torque(parameters: Mapping[str, Value]) -> str:
+    """Returns the port of the torque of the modality."""
+    return "tau_e_sensor" if parameters["modality"] == "Sensor" else "tau"
 
 
 def _liveliest(samples: Samples) -> Samples:

@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sigmahat.fmi.model import Value
 from sigmahat.motor import equation
 from sigmahat.motor.equation import MOTOR, Choice, Fit, Form
 from sigmahat.motor.friction import frictions, slower, with_all_columns
-from sigmahat.motor.log_view import LogView
-from sigmahat.motor.quantities import WIDE, Quantity
+from sigmahat.motor.inertia import KnownInertia
+from sigmahat.motor.quantities import Quantity
 from sigmahat.motor.signals import Signals, set_point_moves
 from sigmahat.motor.spring import SpringFit, is_narrow
-from sigmahat.recording.configuration import Configuration
 
 _UNITS = {"B": "kg.m2", "D_theta": "N.m.s/rad", "tau_coulomb": "N.m"}
 _RELATIVE = 0.1  # largest half width of a determined value, relative to the value
@@ -26,41 +24,7 @@ _POWERS = 4
 interval of the stiffness is a quarter wider; with 3, the interval contains fewer true curves."""
 _SAMPLING = {"B": 0.015, "tau_coulomb": 0.015, "D_theta": 0.001}
 """Relative errors without noise, because reversals happen between samples of period 1 ms."""
-_ENDS = (0.0, -1.96, 1.96)  # mean and interval ends of a known inertia, in standard deviations
-_FAR = 5.0  # largest plausible error of a known B, in standard deviations
-_ANOTHER = 0.5  # smallest relative error of B that suggests a wrong scale of the torque
 _N, _M = 4, 4  # highest orders of the polynomial that are tried
-
-
-def is_inertia_given(configuration: Configuration, parameters: Mapping[str, Value]) -> bool:
-    """Returns whether the configuration gives B, and not with the wide prior of an unknown B.
-
-    parameters  all parameters of the estimator
-    """
-    return "motor.B" in configuration.parameters and float(parameters["prior.B"]) < WIDE
-
-
-@dataclass(frozen=True)
-class KnownInertia:
-    """The inertia B from the configuration, with its uncertainty."""
-
-    value: float  # [kg.m2]
-    std: float  # standard deviation of the relative error of B, > 0
-
-    @staticmethod
-    def of(view: LogView) -> KnownInertia | None:
-        """Returns the inertia of a configuration, if it is given with a prior above 0."""
-        std = float(view.parameters["prior.B"])
-        if not is_inertia_given(view.configuration, view.parameters) or not std > 0:
-            return None
-        return KnownInertia(float(view.parameters["motor.B"]), std)
-
-    def contradicts(self, found: Quantity) -> bool:
-        """Returns whether the error of B is so large that the scale of the torque may be wrong. A
-        wrong torque constant or gear ratio changes B and the stiffness by the same factor.
-        """
-        most = self.value * max(_FAR * self.std, _ANOTHER)
-        return abs(found.value - self.value) - found.half_width > most
 
 
 @dataclass(frozen=True)
@@ -112,13 +76,40 @@ def fit_motor(
         quantities |= {name: _motor_quantity(name, fits, torque) for name in MOTOR[1:]}
     spring = SpringFit(form, fits.first, pieces)
     if "gain" not in fits.first.value:
-        quantities["zero"] = _zero(spring, fits.others, gamma)
+        quantities["zero"] = _zero(spring, fits, T, gamma)
     gain = fits.first.value.get("gain", math.nan), _half_width("gain", fits)
     return MotorFit(quantities, gain, contradicted, polynomial, spring.largest(abs(gamma)))
 
 
+@dataclass(frozen=True)
+class MeasuredSpring:
+    """Fit of the spring to the torque of a sensor."""
+
+    zero: Quantity  # deformation without torque
+    polynomial: Form  # orders and symmetry of the polynomial for the estimator
+    largest: float  # largest torque of the spring in the log [N.m]
+
+
+def fit_spring(
+    pieces: Sequence[Signals], T: float, gamma: float, symmetric: bool, f_0: float
+) -> MeasuredSpring:
+    """Fits the spring to the torque of a sensor, without a motor; arguments as of fit_motor()."""
+    form = Form.of_low_pass(f_0, T, n=_N, m=_M if set_point_moves(pieces) else 1)
+    form, polynomial = _with_spring(pieces, T, gamma, form, symmetric, without=MOTOR)
+    assumptions = Assumptions([form, slower(form)], without=MOTOR)
+    fits = Variants(*assumptions.fits(pieces, T, gamma), [], assumptions)
+    spring = SpringFit(form, fits.first, pieces)
+    zero = _zero(spring, fits, T, gamma)
+    return MeasuredSpring(zero, polynomial, spring.largest(abs(gamma)))
+
+
 def _with_spring(
-    pieces: Sequence[Signals], T: float, gamma: float, form: Form, symmetric: bool
+    pieces: Sequence[Signals],
+    T: float,
+    gamma: float,
+    form: Form,
+    symmetric: bool,
+    without: Collection[str] = (),
 ) -> tuple[Form, Form]:
     """Chooses the polynomial with the best predictions in a cross-validation, up to given orders.
 
@@ -127,10 +118,13 @@ def _with_spring(
 
     The second form is for the estimator, and always has _POWERS powers. With fewer powers, the
     interval of the stiffness would be too narrow.
+
+    without  regressors that are left out
     """
 
     def chosen(form: Form) -> Choice:
-        return equation.choose(equation.equations(pieces, T, gamma, form), form)
+        system = equation.equations(pieces, T, gamma, form)
+        return equation.choose(system.without(without), form)
 
     odd = chosen(form)
     if symmetric:
@@ -139,6 +133,26 @@ def _with_spring(
     is_general = equation.is_more(np.log(odd.errors / general.errors))
     best = general.form if is_general else odd.form
     return best, replace(general.form, n=_POWERS, m=best.m)
+
+
+@dataclass(frozen=True)
+class Assumptions:
+    """Forms of the motor equation whose fits are compared, and held values of the inertia."""
+
+    forms: Sequence[Form]  # the chosen form, then this form with other filters
+    inertias: Sequence[float] = ()  # values of B, the most likely first; none: B is fitted
+    without: Collection[str] = ()  # regressors that are left out
+
+    def fits(self, pieces: Sequence[Signals], T: float, gamma: float) -> tuple[Fit, list[Fit]]:
+        """Returns the fit of the first form with the first inertia, and the other fits."""
+        first, *others = (
+            equation.equations(pieces, T, gamma, form).without(self.without) for form in self.forms
+        )
+        if not self.inertias:
+            return equation.fit(first), [equation.fit(other) for other in others]
+        B, *ends = self.inertias
+        held = [other.known("B", B) for other in others] + [first.known("B", end) for end in ends]
+        return equation.fit(first.known("B", B)), [equation.fit(system) for system in held]
 
 
 @dataclass(frozen=True)
@@ -152,6 +166,7 @@ class Variants:
     first: Fit
     others: Sequence[Fit]  # fits with other filters, or ends of a known inertia
     frictions: Sequence[Fit]  # fits with other forms of friction
+    assumptions: Assumptions  # of first and others
 
 
 def _variants(
@@ -167,26 +182,31 @@ def _variants(
     widest = with_all_columns(form)
     whole, names = equation.equations(pieces, T, gamma, widest), set(widest.names(sensor))
 
+    ends = [] if inertia is None else [inertia.value, *inertia.interval]
+
     def fits_of(other: Form) -> list[Fit]:
         """Fits with an unknown B, then with the known B and with both ends of its interval."""
         if with_all_columns(other) == widest:  # neither a filter nor v_s differs
             system = whole.without(names.difference(other.names(sensor)))
         else:
             system = equation.equations(pieces, T, gamma, other)
-        ends = [] if inertia is None else [inertia.value * (1 + k * inertia.std) for k in _ENDS]
         return [equation.fit(e) for e in (system, *(system.known("B", B) for B in ends))]
 
     plain = replace(form, delay=True)
     fits = {other: fits_of(other) for other in (plain, *frictions(plain))}
     best = min(fits, key=lambda other: np.nan_to_num(fits[other][0].error, nan=np.inf))
     chosen = best if equation.is_worse(fits[plain][0], fits[best][0]) else plain
-    filters = [
-        fits_of(replace(chosen, wide=min(2 * form.wide, 2 * equation.WIDEST / T))),
-        fits_of(slower(chosen)),
-    ]
+    wider = replace(chosen, wide=min(2 * form.wide, 2 * equation.WIDEST / T))
+    forms = [chosen, wider, slower(chosen)]
+    filters = [fits_of(other) for other in forms[1:]]
     first = fits.pop(chosen)
     free, *known = (
-        Variants(first[i], [fit[i] for fit in filters], [fit[i] for fit in fits.values()])
+        Variants(
+            first[i],
+            [fit[i] for fit in filters],
+            [fit[i] for fit in fits.values()],
+            Assumptions(forms, ends if i else []),
+        )
         for i in range(min(2, len(first)))
     )
     if not known:
@@ -225,16 +245,23 @@ def _quantity(value: float, half_width: float, unit: str, negligible: float) -> 
     return Quantity(value, half_width, unit, bool(determined))
 
 
-def _zero(spring: SpringFit, fits: Sequence[Fit], gamma: float) -> Quantity:
+def _zero(spring: SpringFit, fits: Variants, T: float, gamma: float) -> Quantity:
     """Computes the deformation at which spring and constant torque cancel.
 
     The zero is determined if its interval is short compared with the range of the deformation, and
     if the stiffness is positive. A negative stiffness means a wrong sign or gear ratio.
     """
-    value, *others = (replace(spring, fit=fit).zero() for fit in (spring.fit, *fits))
+    start, fitted_others = 0.0, fits.others
+    if spring.form.symmetric and math.isfinite(spring.zero()):
+        # The zero of a curved spring with odd powers is exact only if it is small: second step.
+        start = spring.zero()
+        pieces = [replace(piece, phi=piece.phi - start) for piece in spring.pieces]
+        first, fitted_others = fits.assumptions.fits(pieces, T, gamma)
+        spring = SpringFit(spring.form, first, pieces)
+    value, *others = (replace(spring, fit=fit).zero() for fit in (spring.fit, *fitted_others))
     if not all(map(math.isfinite, [value, *others])):
         return Quantity(math.nan, math.inf, "rad", False)
     half_width = spring.half_width(value) + max(abs(other - value) for other in others)
     is_stiff = spring.slope(value) * gamma < 0
     is_known = is_stiff and is_narrow(half_width, spring.covered)
-    return Quantity(value, half_width, "rad", bool(is_known))
+    return Quantity(start + value, half_width, "rad", bool(is_known))

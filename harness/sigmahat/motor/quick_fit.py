@@ -13,6 +13,7 @@ import numpy as np
 from sigmahat.motor import equation
 from sigmahat.motor.coherence import pass_band
 from sigmahat.motor.equation import MOTOR, Equations, Fit, Form, extra, fit
+from sigmahat.motor.inertia import KnownInertia
 from sigmahat.motor.log_view import LogView
 from sigmahat.motor.noise import is_only_noise
 from sigmahat.motor.signals import set_point_moves
@@ -35,17 +36,13 @@ class QuickFit:
     form: Form  # orders and filters
     fit: Fit  # fit with a polynomial of these orders
     linear: Fit  # fit with a linear spring
+    free: Fit  # fit with a linear spring, as if the configuration gave no inertia
     spring: SpringFit  # the polynomial
 
     @property
     def scores(self) -> dict[str, float]:
         """Determined coefficients of the fit with a linear spring, divided by half intervals."""
-        value, half_width = self.linear.value, self.linear.half_width
-        return {
-            name: value[name] / half_width[name]
-            for name in value
-            if 0 < half_width[name] < math.inf
-        }
+        return _scores(self.linear)
 
     @property
     def has_stiffness(self) -> bool:
@@ -66,9 +63,17 @@ class QuickFit:
     @property
     def sign_of_motor(self) -> float:
         """Common sign of inertia and friction; 0 if the log does not determine it."""
-        scores = self.scores
+        scores = _scores(self.free)
         signs = [np.sign(scores[name]) for name in MOTOR if abs(scores.get(name, 0.0)) > 1]
         return float(np.sign(sum(signs)))
+
+
+def _scores(fit: Fit) -> dict[str, float]:
+    return {
+        name: value / fit.half_width[name]
+        for name, value in fit.value.items()
+        if 0 < fit.half_width[name] < math.inf
+    }
 
 
 def quick_fit(view: LogView, f_0: float | None = None) -> QuickFit | None:
@@ -87,10 +92,12 @@ def quick_fit(view: LogView, f_0: float | None = None) -> QuickFit | None:
     form = Form.of_low_pass(f_0, view.T, _ORDERS, m_most)
     is_symmetric = bool(view.parameters["rls.symmetric"])
     choice = _chosen(view, form if is_symmetric else form.with_all_powers())
-    line = _equations(view, replace(choice.form, n=1, m=1, symmetric=True))
+    linear = replace(choice.form, n=1, m=1, symmetric=True)
     polynomial = fit(choice.equations)
     spring = SpringFit(choice.form, polynomial, view.pieces)
-    return QuickFit(view, choice.form, polynomial, fit(line), spring)
+    line = with_form(view, linear)
+    free = with_free_inertia(view, linear)
+    return QuickFit(view, choice.form, polynomial, line, free, spring)
 
 
 @dataclass(frozen=True)
@@ -155,9 +162,34 @@ def with_form(view: LogView, form: Form) -> Fit:
     return fit(_equations(view, form))
 
 
-def with_known(view: LogView, form: Form, name: str, value: float) -> Fit:
-    """Fits the motor equation with a known value of one coefficient of the motor."""
-    return fit(_equations(view, form).known(name, value))
+def with_known_friction(view: LogView, form: Form, D_theta: float) -> Fit:
+    """Fits the motor equation with a known viscous friction of the motor."""
+    return fit(_equations(view, form).known("D_theta", D_theta))
+
+
+def with_known_inertia(view: LogView, form: Form, B: float) -> Fit:
+    """Fits the motor equation with a known inertia of the motor."""
+    return fit(_free_equations(view, form).known("B", B))
+
+
+def with_unknown_inertia(view: LogView) -> LogView:
+    """Returns a log whose configuration gives no inertia of the motor."""
+    given = view.configuration.parameters
+    others = {name: value for name, value in given.items() if name != "motor.B"}
+    return replace(view, configuration=replace(view.configuration, parameters=others))
+
+
+def with_free_inertia(view: LogView, form: Form) -> Fit:
+    """Fits the motor equation as if the configuration gave no inertia."""
+    return fit(_free_equations(view, form))
+
+
+def with_damped_spring(view: LogView, form: Form) -> Fit:
+    """Fits the motor equation with a spring whose torque also has a damping."""
+    pieces = [
+        replace(piece, extra=np.gradient(piece.phi, view.T)[:, None]) for piece in view.pieces
+    ]
+    return with_form(replace(view, pieces=pieces), form)
 
 
 def with_all_powers(view: LogView, form: Form) -> Fit:
@@ -181,5 +213,19 @@ def _chosen(view: LogView, form: Form) -> equation.Choice:
 
 
 def _equations(view: LogView, form: Form) -> Equations:
+    """Computes the equations; an inertia that the configuration gives is held within its prior."""
+    system = _free_equations(view, form)
+    inertia = KnownInertia.of(view)
+    if view.has_sensor or inertia is None:
+        return system
+    free = fit(system)
+    B, half_width = free.value["B"], free.half_width["B"]
+    low, high = inertia.interval
+    if not half_width < (high - low) / 2:
+        return system.known("B", inertia.value)  # the prior says more than the log
+    return system if low < B < high else system.known("B", low if low > B else high)
+
+
+def _free_equations(view: LogView, form: Form) -> Equations:
     system = equation.equations(view.pieces, view.T, view.gamma, form)
     return system.without(MOTOR) if view.has_sensor else system

@@ -67,6 +67,8 @@ class SpringFit:
 
         Of several zeros, the nearest to the mean deformation is returned, at the mean set-point.
         """
+        if self.form.symmetric:
+            return self._zero_of_odd_powers()
         polynomial = np.zeros(self._exponents[-1] + 1)
         polynomial[self._exponents] = self._coefficients
         polynomial[0] += self.fit.value.get(CONSTANT, 0.0)
@@ -79,8 +81,29 @@ class SpringFit:
         middle = np.mean([np.mean(piece.phi) for piece in self.pieces]) / self.units[0]
         return float(real[np.argmin(np.abs(real - middle))]) * self.units[0]
 
+    def _zero_of_odd_powers(self) -> float:
+        """Computes the zero from the constant torque of a fit with odd powers.
+
+        To first order, a spring with its zero at z has the torque p(phi) - z p'(phi). The slope p'
+        has even powers only, which the fit does not have: the constant is -z times the constant
+        part of the slope. The slope of a spring that hardens is larger on average than at 0.
+        """
+        return -self.fit.value[CONSTANT] / self._constant_slope
+
+    @cached_property
+    def _constant_slope(self) -> float:
+        """The constant in a fit of constant and odd powers to the slope of the spring, over the
+        deformations of the log [N.m/rad]."""
+        x = np.concatenate([piece.phi for piece in self.pieces]) / self.units[0]
+        e = self._exponents
+        slope = (e * x[:, None] ** np.maximum(e - 1, 0)) @ self._coefficients / self.units[0]
+        columns = np.column_stack([np.ones_like(x), x[:, None] ** e])
+        return float(np.linalg.lstsq(columns, slope, rcond=None)[0][0])
+
     def half_width(self, zero: float) -> float:
         """Computes half of the 95 % interval of the zero [rad], by linear error propagation."""
+        if self.form.symmetric:
+            return self.fit.half_width[CONSTANT] / abs(self._constant_slope)
         x = zero / self.units[0]
         by_eta = np.outer(x**self._exponents, self._of_set_point(self._set_point)).ravel()
         names = list(self.fit.value)

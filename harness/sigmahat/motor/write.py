@@ -48,13 +48,14 @@ def update(document: tomlkit.TOMLDocument, identified: Identified, joint: str = 
     section = several_joints.section(document, joint)
     whole = several_joints.of_joint(document, joint)
     given = dict(toml_file.dotted(whole.get("parameters", tomlkit.table()).unwrap()))
+    bandwidth = identified.bandwidth
     values: dict[str, Any] = {
         "filter.V_a": identified.V_a,
         "rls.symmetric": identified.symmetric,
         "rls.n": identified.n,
         "rls.m": identified.m,
-        "noise.tau": math.sqrt(identified.tau_variance),
-        "regression.bandwidth": _ABOVE * identified.bandwidth,
+        _noise_key(identified): math.sqrt(identified.tau_variance),
+        "regression.bandwidth": None if bandwidth is None else _ABOVE * bandwidth,
         "range.phi": _ROOM * identified.phi,
         "range.setPoint": _ROOM * identified.set_point,
         "range.setPoint_center": identified.set_point_center,
@@ -75,7 +76,7 @@ def update(document: tomlkit.TOMLDocument, identified: Identified, joint: str = 
     values = {
         name: value
         for name, value in values.items()
-        if name not in kept and (value is False or value != 0)
+        if value is not None and name not in kept and (value is False or value != 0)
     }
     parameters = section.setdefault("parameters", tomlkit.table())
     unknown = {n: value for n, value in _unknown(identified).items() if n not in given}
@@ -103,6 +104,10 @@ def update(document: tomlkit.TOMLDocument, identified: Identified, joint: str = 
     return written
 
 
+def _noise_key(identified: Identified) -> str:
+    return "noise.tau_e" if identified.has_sensor else "noise.tau"
+
+
 def _unknown(identified: Identified) -> dict[str, tuple[float, str]]:
     """Chooses values for undetermined motor data, with a comment, by parameter: the middle of the
     positive part of the interval, if any."""
@@ -110,7 +115,7 @@ def _unknown(identified: Identified) -> dict[str, tuple[float, str]]:
     for name, given in (("B", identified.B), ("D_theta", identified.D_theta)):
         quantity = identified.quantities.get(name)
         if quantity is not None and not quantity.determined:
-            low, high = quantity.interval
+            low, high = quantity.fitted
             is_held = math.isfinite(high) and high > 0
             value = 0.5 * (max(low, 0.0) + high) if is_held else given
             values[f"motor.{name}"] = (value, _MIDDLE if is_held else NOT_YOURS)
@@ -134,11 +139,11 @@ def _wide_priors(identified: Identified, comments: Mapping[str, str]) -> dict[st
         D_theta = None
     if D_theta is not None and math.isfinite(D_theta.half_width) and identified.D_theta > 0:
         # Encoders that are read at different times look like positive or negative friction.
-        largest = max(abs(end / identified.D_theta - 1) for end in D_theta.interval)
+        largest = max(abs(end / identified.D_theta - 1) for end in D_theta.fitted)
         priors["prior.D_theta"] = max(priors["prior.D_theta"], largest)
     tau_coulomb = undetermined.get("tau_coulomb")
     if tau_coulomb is not None:
-        largest = max(abs(end) for end in tau_coulomb.interval)
+        largest = max(abs(end) for end in tau_coulomb.fitted)
         priors["prior.tau_coulomb"] = largest if math.isfinite(largest) else ANY_COULOMB
     return priors
 
@@ -199,7 +204,8 @@ def _record(identified: Identified) -> tomlkit.items.Table:
     table["tau_noise"].comment("standard deviation [N.m]")
     table["theta_noise"] = float(f"{identified.theta_variance**0.5:.3g}")
     table["theta_noise"].comment("standard deviation, rounding included [rad]")
-    table["bandwidth"] = float(f"{identified.bandwidth:.4g}")
-    table["bandwidth"].comment("of a filter that balances both [rad/s]")
+    if identified.bandwidth is not None:
+        table["bandwidth"] = float(f"{identified.bandwidth:.4g}")
+        table["bandwidth"].comment("of a filter that balances both [rad/s]")
     table.add(tomlkit.nl())
     return table

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Container, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,6 +15,17 @@ from sigmahat.show.style import plain_title
 
 if TYPE_CHECKING:
     import pyarrow as pa
+
+
+REPORT = "report.html"  # name of the report in its folder of results
+
+
+@dataclass(frozen=True)
+class Link:
+    """A line of a report that leads to another file."""
+
+    text: str
+    path: Path
 
 
 @dataclass(frozen=True)
@@ -34,6 +46,7 @@ class Contents:
     panels: Sequence[Panel]
     headline: str = ""  # the result in one line, above all lines
     answer: Sequence[Panel] = ()  # panels above all other panels, and above the tables
+    links: Sequence[Link] = ()  # lines below the other lines
     notes: Sequence[str] = ()  # sentences about the processing of the samples
     marks: Sequence[float] = ()  # times of dotted lines in the panels over time [s]
     whole: tuple[float, float] | None = None

@@ -11,13 +11,11 @@ from pydantic import ValidationError
 
 from sigmahat.checks.findings import findings_of
 from sigmahat.checks.text import sentence
-from sigmahat.files.tables import read_csv
-from sigmahat.report.contents import Contents, TextTable, number, of_file
+from sigmahat.report.contents import REPORT, Contents, Link, TextTable, number, of_file
 from sigmahat.report.residuals import residual_panels, residuals
 from sigmahat.result.curve import (
     CURVE,
     Curve,
-    headline,
     polynomial_in_words,
     reach_in_words,
     read_curve,
@@ -25,8 +23,9 @@ from sigmahat.result.curve import (
 )
 from sigmahat.result.curve_of_log import POINTS, MeasuredPoints, read_points
 from sigmahat.result.data_sheet import WORDS
-from sigmahat.result.estimate import JOINTS, continued_in_words
+from sigmahat.result.estimate import continued_in_words, read_joints
 from sigmahat.result.estimate_table import REPLAYED, EstimateTable, Replayed
+from sigmahat.result.headline import Confidence, headline
 from sigmahat.result.log_panels import (
     curve_panels,
     quantity_panels,
@@ -64,7 +63,7 @@ def from_log(folder: Path) -> Contents:
         estimator_table(sheet),
     ]
     return Contents(
-        f"Log: {folder.resolve().name}",
+        f"Joint {log.joint}" if log.joint else f"Log: {folder.resolve().name}",
         [
             _origin(sheet, log, folder),
             # A gap in the log has ticks, but no rows.
@@ -78,7 +77,7 @@ def from_log(folder: Path) -> Contents:
             *quantity_panels(reduced, ""),
             *(residual_panels(of_model) if of_model else []),
         ],
-        headline=headline(curve, sheet.doubt),
+        headline=_headline(sheet, log, curve),
         answer=list(curve_panels(curve, points)),
         notes=[
             *continued_in_words([each.file for each in sheet.logs[:-1]]),
@@ -92,23 +91,26 @@ def from_log(folder: Path) -> Contents:
 
 
 def from_joints(folder: Path) -> Contents:
-    """The table of several joints, and the curve of each joint.
+    """The table of several joints, a line for each joint, and the curve of each joint.
+
+    Each line is a link to the report of the joint, REPORT in its folder.
 
     Raises ValueError, which says what to do, for a file that is missing or damaged.
     """
-    table = read_csv(folder / JOINTS)
-    if table.column_names[:1] != ["joint"]:
-        raise ValueError(f"{folder / JOINTS}: expected a table of `estimate`; run `estimate` again")
-    names = list(dict.fromkeys(map(str, table["joint"].to_pylist())))
-    panels, lines = [], list[str]()
+    names, table = read_joints(folder)
+    panels, lines, links = [], list[str](), []
     for name in names:
         sheet, log, curve, points = _beside_the_table(folder / name)
         lines = lines or [_origin(sheet, log, folder / name)]  # the same log for all joints
+        links.append(Link(f"{name}: {_headline(sheet, log, curve)}", folder / name / REPORT))
         _, *of_curve = curve_panels(curve, points)
         panels += [replace(each, title=f"{name}: {each.title}") for each in of_curve]
-    note = f"Each joint has a report of its own: sigmahat report {folder}/{names[0]}"
-    stiffness = replace(of_file("Stiffness", table), note=note)
-    return Contents(f"Joints: {folder.resolve().name}", lines, [stiffness], panels)
+    stiffness = of_file("Stiffness", table)
+    return Contents(f"Joints: {folder.resolve().name}", lines, [stiffness], panels, links=links)
+
+
+def _headline(sheet: Sheet, log: Replayed, curve: Curve) -> str:
+    return headline(curve, Confidence(sheet.doubt, log.doubt), log.changes)
 
 
 def _beside_the_table(folder: Path) -> tuple[Sheet, Replayed, Curve, MeasuredPoints]:

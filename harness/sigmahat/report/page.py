@@ -1,8 +1,10 @@
 """The job of `sigmahat report`: one HTML file of the results in a folder, of several commands."""
 
+import os
 import re
 from collections.abc import Callable
 from pathlib import Path
+from urllib.parse import quote
 
 from bokeh.embed import components
 from bokeh.resources import Resources
@@ -11,7 +13,7 @@ from sigmahat.experiments.records import NAME as RECORDS
 from sigmahat.files.templates import environment
 from sigmahat.report.contents import Contents, TextTable, of_file
 from sigmahat.report.from_log import from_joints, from_log
-from sigmahat.result.estimate import JOINTS
+from sigmahat.result.estimate import JOINTS, read_joints
 from sigmahat.result.log_panels import quantity_panels, reduce, sampling, stiffness_panels
 from sigmahat.show.plots import plots
 from sigmahat.show.style import PAGE
@@ -76,8 +78,17 @@ def from_sweep(folder: Path) -> Contents:
     return Contents(f"Sweep: {folder.resolve().name}", lines, [summary], panels)
 
 
-def report(folder: Path) -> str:
+def joints_of(folder: Path) -> list[Path]:
+    """Returns the folders of the joints in a folder of results of several joints, else none."""
+    if not (folder / JOINTS).is_file():
+        return []
+    return [folder / name for name in read_joints(folder)[0]]
+
+
+def report(folder: Path, out: Path) -> str:
     """Creates HTML with the tables and plots of a reproduction, a log or a sweep in a folder.
+
+    out  file of the report, from which its links lead to the reports of joints
 
     Raises ValueError, which says what to do, if the folder has no such results, or damaged files.
     """
@@ -90,7 +101,7 @@ def report(folder: Path) -> str:
     }
     for name, contents in kinds.items():
         if (folder / name).is_file():
-            return _page(contents(folder))
+            return _page(contents(folder), out)
     if (folder / RECORDS).is_file() and not any(folder.glob("*.csv")):
         raise ValueError(f"{folder}: incomplete sweep; run the command of the sweep again")
     raise ValueError(
@@ -99,16 +110,27 @@ def report(folder: Path) -> str:
     )
 
 
-def _page(contents: Contents) -> str:
+def _page(contents: Contents, out: Path) -> str:
+    links = [(each.text, _address(each.path, out)) for each in contents.links]
     panels, first = [*contents.answer, *contents.panels], len(contents.answer)
     script, divs = components(plots(panels, contents.marks, contents.whole)) if panels else ("", [])
     shown = list(zip(range(len(panels)), panels, divs, strict=True))
     page = environment(Path(__file__).parent).get_template("page.html")
     return page.render(
         contents=contents,
+        links=links,
         style=PAGE.read_text(encoding="utf-8"),
         answer=shown[:first],
         plots=shown[first:],
         library=Resources(mode="inline", components=["bokeh"]).render() if panels else "",
         script=script,
     )
+
+
+def _address(path: Path, out: Path) -> str:
+    """Returns the address of a file in a link of the page `out`."""
+    try:
+        relative = Path(os.path.relpath(path.resolve(), out.resolve().parent))
+    except ValueError:  # on another drive of Windows
+        return path.resolve().as_uri()
+    return quote(relative.as_posix())

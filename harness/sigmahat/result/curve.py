@@ -146,41 +146,11 @@ def read_curve(path: Path, polynomial: Polynomial) -> Curve:
 
 
 _STIFFNESS_HEAD = ("phi [rad]", "sigma [N.m/rad]", "95 % interval")
+_INVISIBLE = 1e-6  # share of the largest term of a polynomial
 _FAMILY_HEAD = (
     *("setPoint", "phi from [rad]", "to [rad]"),
     *("sigma half way down", "in the middle [N.m/rad]", "half way up"),
 )
-_MOST_SETTINGS = 5  # largest number of set-points in a headline
-
-
-def headline(curve: Curve, doubt: str) -> str:
-    """Formats stiffness and 95 % interval in one line, for each setting of a variable stiffness.
-
-    doubt  item of the output doubt at the end
-    """
-    if not curve.branches:
-        return "no stiffness: the estimator used no sample of the log"
-    every = len(curve.branches) - 1
-    count = min(every + 1, _MOST_SETTINGS)
-    chosen = [curve.branches[every * i // max(count - 1, 1)] for i in range(count)]
-    if every:
-        text = ", ".join(f"{_plus_minus(each)} at {each.set_point:.4g}" for each in chosen)
-        text += " (N.m/rad at set-points)"
-    else:
-        text = _in_one_line(chosen[0])
-    if curve.claims:
-        text += ", confident" if doubt == "None" else f", not confident ({doubt})"
-    return text
-
-
-def _plus_minus(branch: Branch) -> str:
-    """Formats the stiffness in the middle of the data with half of its interval, without unit."""
-    _, sigma, interval = stiffness_in_the_middle(branch)
-    if interval is None:
-        return f"{sigma:.4g}"
-    half = (interval[1] - interval[0]) / 2
-    text = f"{sigma:.4g} +- {half:.3g}"
-    return text if is_told(branch) else f"cannot tell ({text})"
 
 
 def is_told(branch: Branch) -> bool:
@@ -193,21 +163,6 @@ def stiffness_in_the_middle(branch: Branch) -> tuple[float, float, Range | None]
     """Returns the deformation in the middle [rad], and stiffness and interval there [N.m/rad]."""
     phi = characteristic(branch.reach)[1]
     return phi, *_at(branch, phi)
-
-
-def _in_one_line(branch: Branch) -> str:
-    """Formats the stiffness in the middle of the data, and its range if wider than the interval."""
-    phi, sigma, interval = stiffness_in_the_middle(branch)
-    half = 0.0 if interval is None else (interval[1] - interval[0]) / 2
-    text = f"{_plus_minus(branch)} N.m/rad at {phi:.3g} rad"
-    within = branch.sigma[branch.within]
-    if len(within) and np.ptp(within) > max(half, _CURVED * abs(sigma)):
-        low, high = branch.reach
-        text += f" ({within.min():.4g} to {within.max():.4g} from {low:.3g} to {high:.3g} rad)"
-    return text
-
-
-_CURVED = 0.01  # a smaller relative change of the stiffness is not printed
 
 
 def curve_text(curve: Curve, polynomial: bool = True) -> list[str]:
@@ -236,14 +191,31 @@ def reach_in_words(curve: Curve) -> str:
 
 
 def polynomial_in_words(polynomial: Polynomial) -> str:
-    """Formats the torque as a polynomial, with six digits of each coefficient."""
+    """Formats the torque as a polynomial, with six digits of each coefficient.
+
+    Terms are left out that are too small in the range of the data to change these digits.
+    """
+    eta = _visible(polynomial)
     terms = [
         f"{_coefficient(row)}{_power(' phi', power)}"
-        for row, power in zip(polynomial.eta, polynomial.powers_of_phi, strict=True)
+        for row, power in zip(eta, polynomial.powers_of_phi, strict=True)
         if any(row)
     ]
     symbols = "phi in rad" + (", s = setPoint" if polynomial.is_of_set_point else "")
     return f"tau_e [N.m] = {_sum(terms) or '0'}; {symbols}"
+
+
+def _visible(polynomial: Polynomial) -> list[list[float]]:
+    """Returns the coefficients, with 0 for terms that are invisible in the range of the data."""
+    phi = max(map(abs, polynomial.phi or (1.0, 1.0)))
+    set_point = max(map(abs, polynomial.set_point or (1.0, 1.0)))
+    of_phi = phi ** np.array(polynomial.powers_of_phi, dtype=float)
+    of_set_point = set_point ** np.array(polynomial.powers_of_set_point, dtype=float)
+    sizes = np.abs(polynomial.eta) * np.outer(of_phi, of_set_point)
+    visible: list[list[float]] = np.where(
+        sizes > _INVISIBLE * sizes.max(initial=0.0), polynomial.eta, 0.0
+    ).tolist()
+    return visible
 
 
 def _coefficient(row: Sequence[float]) -> str:

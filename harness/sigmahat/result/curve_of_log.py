@@ -14,6 +14,7 @@ from sigmahat.recording.gaps import stretches
 from sigmahat.recording.log import Array
 from sigmahat.result import sheet
 from sigmahat.result.curve import Branch, Curve, characteristic, nearest
+from sigmahat.result.headline import Confidence, StiffnessChange
 from sigmahat.result.sheet import Polynomial
 from sigmahat.result.stored import LearnedLog, Range
 
@@ -269,8 +270,9 @@ def _grid(reach: Reach, polynomial: Polynomial) -> Array:
 
 @dataclass(frozen=True)
 class Answer:
-    """The result of a replay: curve, measured points, and doubt at the end."""
+    """The result of a replay: curve, measured points, confidence, and changes of the stiffness."""
 
     curve: Curve  # torque and stiffness against the deformation
     points: MeasuredPoints  # measured points of the curve
-    doubt: str  # item of the output doubt at the end
+    confidence: Confidence
+    changes: Sequence[StiffnessChange]

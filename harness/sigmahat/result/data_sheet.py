@@ -138,7 +138,10 @@ def _parameters(
         value = float(every[f"motor.{name}"])
         std = value * float(every[f"prior.{name}"]) if measured else 0.0
         known = identified.get(name) if std else None
-        found[name] = _with_interval(last[f"{name}_hat"], unit, value, std, known)
+        estimate = last[f"{name}_hat"]
+        if name == "B" and not estimate > 0:
+            estimate = value  # no motor has such an inertia: the log did not show it
+        found[name] = _with_interval(estimate, unit, value, std, known)
     if not claims:
         return found
     stds = {"tau_coulomb": float(every["prior.tau_coulomb"]) if measured else 0.0}

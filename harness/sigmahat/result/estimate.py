@@ -7,10 +7,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pyarrow as pa
 from numpy.typing import NDArray
 
 from sigmahat.files.output import sha256, write_json
-from sigmahat.files.tables import write_csv
+from sigmahat.files.tables import read_csv, write_csv
 from sigmahat.fmi.model import Value, installed_model
 from sigmahat.fmi.series import Series
 from sigmahat.recording import notes
@@ -23,7 +24,6 @@ from sigmahat.result.curve import (
     CURVE,
     Curve,
     curve_text,
-    headline,
     is_told,
     stiffness_in_the_middle,
     stiffness_points,
@@ -32,8 +32,9 @@ from sigmahat.result.curve import (
 from sigmahat.result.curve_of_log import POINTS, Answer, write_points
 from sigmahat.result.data_sheet import MOTOR, UNITS, WORDS, data_sheet, priors
 from sigmahat.result.estimate_table import MCAP, REPLAYED, EstimateWriter, Replayed, mcap_file
+from sigmahat.result.headline import Confidence, StiffnessChange, headline
 from sigmahat.result.learned import LEARNED, read_learned, write_learned
-from sigmahat.result.replayed_log import Replay, StiffnessChange
+from sigmahat.result.replayed_log import Replay
 
 _MOTOR = ("D_theta_hat", "B_hat", "tau_coulomb_hat")
 _UNITS = {
@@ -96,17 +97,26 @@ class Estimate:
 
     @property
     def headline(self) -> str:
-        """The stiffness in one line."""
+        """The stiffness in one line, with its changes, and whether it is trusted."""
         for note in self.notes:
             if isinstance(note, NoSignal) and not any(map(is_told, self.curve.branches)):
                 return (
                     f"cannot tell: the torque is {note.value:g} throughout ({note.column}); "
                     "choose another column, or record with the motor on"
                 )
-        return headline(self.curve, self.doubt_at_end)
+        return headline(self.curve, self.confidence, self.changes)
+
+    @property
+    def confidence(self) -> Confidence:
+        """How far the estimator trusted its estimate, at the end and in the second half."""
+        return Confidence(self.doubt_at_end, {"None": self.confident, **self.doubt})
 
     def as_dict(self) -> dict[str, Any]:
-        """Returns the result as a dictionary for JSON, with the units of its numbers by key."""
+        """Returns the result as a dictionary for JSON, with the units of its numbers by key.
+
+        An inertia that is not above 0 is no result, and becomes None.
+        """
+        B = self.motor["B_hat"]
         return {
             "answer": self.headline,
             "units": _UNITS,
@@ -125,7 +135,7 @@ class Estimate:
             "epsilon_rms": self.epsilon_rms,
             "eta": self.eta,
             "curve": stiffness_points(self.curve),
-            "motor": self.motor,
+            "motor": {**self.motor, "B_hat": B if B > 0 else None},
             "joint": self.joint,
             "sigma_per_gain": self.sigma_per_gain,
             "changes": [asdict(change) for change in self.changes],
@@ -186,6 +196,7 @@ def estimate(
     replayed = Replayed(
         *(REPLAYED.name, REPLAYED.version, str(log.path)),
         *(result.ticks, result.skipped, result.T),
+        joint=configuration.joint,
         changes=result.changes,
         doubt=replay.statistics.doubts,
         notes=result.notes,
@@ -285,8 +296,10 @@ def _second_half(result: Estimate) -> Iterator[str]:
 def _found(result: Estimate) -> Iterator[str]:
     """Formats the motor data and all estimates of FilteredRegression that are not negligible."""
     motor = result.motor
+    B = motor["B_hat"]
+    inertia = f"B = {B:.4g} kg.m2" if B > 0 else f"no B ({B:.4g} kg.m2 is impossible)"
     yield (
-        f"motor data found: B = {motor['B_hat']:.4g} kg.m2, D_theta = "
+        f"motor data found: {inertia}, D_theta = "
         f"{motor['D_theta_hat']:.4g} N.m.s/rad, Coulomb friction {motor['tau_coulomb_hat']:.3g} N.m"
     )
     others = [
@@ -301,16 +314,43 @@ JOINTS = "joints.csv"
 """Name of the table with rows for each joint of a log, next to the folders of the joints."""
 _TITLES = (
     *("joint", "setPoint", "phi [rad]", "sigma [N.m/rad]", "sigma low [N.m/rad]"),
-    *("sigma high [N.m/rad]", "confident"),
+    *("sigma high [N.m/rad]", "confident", "last change at [s]", "last change [%]"),
 )
 
 
 def write_joints(found: Mapping[str, Estimate], folder: Path) -> None:
-    """Writes the stiffness of each joint in the middle of its data, for each setting."""
+    """Writes the stiffness of each joint in the middle of its data, for each setting.
+
+    The stiffness is the one after the last change in the log, if the log has a change.
+    """
     rows = []
     for name, each in found.items():
-        sure = "yes" if each.doubt_at_end == "None" else f"no: {each.doubt_at_end}"
+        doubt = each.confidence.doubt
+        sure = "yes" if doubt is None else f"no: {doubt}"
+        change = _last_change(each.changes)
         for branch in each.curve.branches:
             phi, sigma, interval = stiffness_in_the_middle(branch)
-            rows.append([name, branch.set_point, phi, sigma, *(interval or (None, None)), sure])
+            stiffness = [phi, sigma, *(interval or (None, None))]
+            rows.append([name, branch.set_point, *stiffness, sure, *change])
+        if not each.curve.branches:
+            rows.append([name, *[None] * 5, sure, *change])
     write_csv(folder / JOINTS, _TITLES, rows)
+
+
+def _last_change(changes: Sequence[StiffnessChange]) -> tuple[float | None, float | None]:
+    """Returns time [s] and size [%] of the last change; None for what is not known."""
+    if not changes:
+        return None, None
+    last = changes[-1]
+    return last.t, None if last.relative is None else 100 * last.relative
+
+
+def read_joints(folder: Path) -> tuple[list[str], pa.Table]:
+    """Reads the names of the joints of a folder, which each have a folder there, and their table.
+
+    Raises ValueError for a file that write_joints() did not write, OSError without such a file.
+    """
+    table = read_csv(folder / JOINTS)
+    if table.column_names[:1] != ["joint"]:
+        raise ValueError(f"{folder / JOINTS}: expected a table of `estimate`; run `estimate` again")
+    return list(dict.fromkeys(map(str, table["joint"].to_pylist()))), table

@@ -33,7 +33,7 @@ from sigmahat.recording.log import Log, LogError
 from sigmahat.recording.notes import RecordingNote
 from sigmahat.recording.readers.csv_parquet import CsvLog, ParquetLog
 from sigmahat.recording.sampling import Samples
-from sigmahat.result.replayed_log import StiffnessChange
+from sigmahat.result.headline import StiffnessChange
 from sigmahat.result.stored import NO_OTHER_KEYS, Format, Text
 
 _ROWS = 1 << 15
@@ -229,6 +229,7 @@ class Replayed:
     doubt: dict[Text, float]
     """Fraction of the ticks in the second half, by item of the output `doubt`."""
     notes: Sequence[RecordingNote]  # on reading the log and on its samples
+    joint: Text = ""  # name of the joint; empty if the configuration names no joint
     findings: list[dict[str, Any]] | None = None
     """Findings of the checks as data, checks/findings.py; None without checks."""
 

@@ -2,7 +2,6 @@
 
 from collections import Counter
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
@@ -27,6 +26,7 @@ from sigmahat.result.curve_of_log import (
     since_change,
     spread,
 )
+from sigmahat.result.headline import Confidence, StiffnessChange
 from sigmahat.result.learned import Learned, continue_from
 from sigmahat.result.stored import LearnedLog, Range
 
@@ -102,26 +102,13 @@ class ReplayStatistics:
         return {item: count / ticks for item, count in self._doubts.most_common()}
 
     @property
+    def confidence(self) -> Confidence:
+        return Confidence(self.last_doubt, self.doubts)
+
+    @property
     def rms(self) -> float:
         """RMS of the prediction error of the torque in the second half [N.m]."""
         return float(np.sqrt(self._squares / max(self._later, 1)))
-
-
-@dataclass(frozen=True)
-class StiffnessChange:
-    """A detected change of the stiffness, with time and relative size."""
-
-    t: float  # time since the start of the log [s]
-    relative: float | None
-    """Relative difference between the last confident estimates before this change and before the
-    next change [1], at the detected deformation and set-point; None without both estimates."""
-
-    @property
-    def in_words(self) -> str:
-        """Sentence about the change for the user."""
-        if self.relative is None:
-            return f"the stiffness changed at {self.t:.4g} s, by how much is not known"
-        return f"the stiffness changed by {100 * self.relative:+.0f} % at {self.t:.4g} s"
 
 
 def coefficients(parameters: Mapping[str, Value]) -> list[str]:
@@ -232,4 +219,5 @@ class Replay:
         parts = self.statistics.points.items()
         outputs = since_change({name: np.concatenate(of_chunks) for name, of_chunks in parts})
         found = curve(self.estimator, self.logs, points_of(outputs, self.method))
-        return Answer(found, shown_points(outputs, self.method), self.statistics.last_doubt)
+        shown = shown_points(outputs, self.method)
+        return Answer(found, shown, self.statistics.confidence, self.changes.found)

@@ -161,9 +161,8 @@ class Jobs:
 
         setup, document = self._setup, tomlkit.parse(text)
         out = Path("sigmahat-results", setup.log.path.stem, setup.joint)
-        if setup.get("modality") != "Sensor":  # else there is no motor to identify
-            found = identify(setup.log, checked_configuration(document, setup.path))
-            update(document, found)
+        found = identify(setup.log, checked_configuration(document, setup.path))
+        update(document, found)
         self._later(partial(self._show, version, busy="Estimating ..."))
         configuration = checked_configuration(document, setup.path)
         findings = [each.as_dict() for each in check(setup.log, configuration).findings]

@@ -263,7 +263,7 @@ class Window:
     def _show(self) -> None:
         from sigmahat.checks.findings import Severity
         from sigmahat.checks.text import sentence
-        from sigmahat.result.curve import headline
+        from sigmahat.result.headline import headline
 
         self._is_due = False
         setup, answer = self._setup, self._setup.answer
@@ -280,7 +280,9 @@ class Window:
         # The last result is dimmed while another result is computed.
         opacity = "0.45" if setup.busy else "1"
         self._headline.styles = {**self._headline.styles, "opacity": opacity}
-        text = "" if answer is None else escape(headline(answer.curve, answer.doubt))
+        text = ""
+        if answer is not None:
+            text = escape(headline(answer.curve, answer.confidence, answer.changes))
         wrong = [] if setup.checked is None else setup.checked.of(Severity.WRONG)
         if wrong:  # the result means nothing before this is mended
             text += f'<br><small style="color: var(--wrong)">{escape(sentence(wrong[0]))}</small>'

@@ -29,7 +29,7 @@ from sigmahat.motor.hypotheses.hypothesis import (
 )
 from sigmahat.motor.hypotheses.slope import Slope, slope_of
 from sigmahat.motor.log_view import LogView, liveliest_part
-from sigmahat.motor.quick_fit import LINEAR, QuickFit, gear_error, quick_fit
+from sigmahat.motor.quick_fit import LINEAR, QuickFit, gear_error, quick_fit, with_unknown_inertia
 from sigmahat.recording.log import LogError
 
 PORTS = ("theta", "q")
@@ -112,9 +112,14 @@ class Positions:
         return [found for found in (self.scale, self.sign) if found is not None]
 
 
+def _fit(view: LogView, f_0: float | None = None) -> QuickFit | None:
+    """Fits the motor equation without the configured inertia, which a wrong scale contradicts."""
+    return quick_fit(with_unknown_inertia(view), f_0)
+
+
 def compare_positions(view: LogView) -> Positions:
     """Compares the motions of q and theta, and corrects scale and sign."""
-    same = Positions(view, quick_fit(view))
+    same = Positions(view, _fit(view))
     if not {"theta", "q"} <= set(view.samples.names):
         return same
     ports = view.configuration.ports
@@ -149,7 +154,7 @@ def _with_scale(before: Positions, slope: Slope) -> Positions:
     if size > 1 and not _is_gamma(best, view) and _is_positive(before.fit):
         return replace(before, scale=evidence, may_be_held=True)
     corrected = best.applied(view)
-    return Positions(corrected, quick_fit(corrected), evidence)
+    return Positions(corrected, _fit(corrected), evidence)
 
 
 def _is_positive(fit: QuickFit | None) -> bool:
@@ -192,7 +197,7 @@ def _by_torque(
     best, fit = None, before.fit
     f_0 = fit.form.f_0 if fit else None  # errors compare with one filter only
     for hypothesis in sorted(hypotheses, key=unlikely):
-        after = quick_fit(hypothesis.applied(before.view), f_0)
+        after = _fit(hypothesis.applied(before.view), f_0)
         is_better = _is_better(fit, after) if best else _is_plausible(fit, after, slope)
         if is_better:
             best, fit = hypothesis, after
@@ -204,7 +209,8 @@ def _refined(view: LogView, slope: float) -> Hypothesis:
 
     The slope is inexact because the joint is flexible; the torque depends on 1 % of theta.
     """
-    near, theta = view.scaled("theta", slope), view.configuration.ports["theta"]
+    near = with_unknown_inertia(view).scaled("theta", slope)
+    theta = view.configuration.ports["theta"]
     fit = quick_fit(near)
     error = None if fit is None else gear_error(near, fit.form)
     if error is None or error.half_width > _PRECISE:
@@ -217,7 +223,7 @@ def _with_sign(before: Positions) -> Positions:
     slope = _clear_slope(view)
     if slope is None or slope.value > 0:
         return before
-    after = quick_fit(view.scaled("q", -1.0), fit.form.f_0 if fit else None)
+    after = _fit(view.scaled("q", -1.0), fit.form.f_0 if fit else None)
     # In slow motion, only a wrong sign makes the link move as far as its motor, but reversed.
     is_certain = slope.is_slow and slope.is_rigid and distance(-slope.value, 1.0) < _LIKE
     if not is_certain and _denies(fit, after):
@@ -234,7 +240,7 @@ def _with_sign(before: Positions) -> Positions:
         hypotheses = [of_theta, of_q] if is_theta else [of_q, of_theta]
     corrected = hypotheses[0].applied(view)
     sign = Evidence(slope.value, hypotheses)
-    return replace(before, view=corrected, fit=quick_fit(corrected), sign=sign)
+    return replace(before, view=corrected, fit=_fit(corrected), sign=sign)
 
 
 def _denies(before: QuickFit | None, after: QuickFit | None) -> bool:

@@ -9,10 +9,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sigmahat.motor.equation import explains
+from sigmahat.motor.equation import Fit, Form, explains
 from sigmahat.motor.friction import few_frictions, slower
 from sigmahat.motor.hypotheses.hypothesis import Evidence, Hypothesis, distance, gear_of_slope
 from sigmahat.motor.hypotheses.positions import Positions
+from sigmahat.motor.inertia import KnownInertia
 from sigmahat.motor.log_view import LogView
 from sigmahat.motor.quantities import WIDE
 from sigmahat.motor.quick_fit import (
@@ -22,9 +23,14 @@ from sigmahat.motor.quick_fit import (
     delay_of_torque,
     error_of_parts,
     gear_error,
+    quick_fit,
     with_all_powers,
+    with_damped_spring,
     with_form,
-    with_known,
+    with_free_inertia,
+    with_known_friction,
+    with_known_inertia,
+    with_unknown_inertia,
 )
 from sigmahat.motor.spring import is_off
 from sigmahat.recording.units import scale
@@ -75,6 +81,13 @@ def compare_torque(positions: Positions) -> TorqueEvidence:
     view, fit = positions.view, positions.fit
     if fit is None or not fit.has_stiffness:
         return TorqueEvidence()
+    inertia = None if view.has_sensor else _inertia(view, fit)
+    if inertia is not None:  # held at the configured value, it would falsify all that follows
+        view = with_unknown_inertia(view)
+    elif KnownInertia.of(view) is not None:
+        fit = quick_fit(view, fit.form.f_0)
+        if fit is None or not fit.has_stiffness:
+            return TorqueEvidence()
     if not positions.corrections and (gear := _gear(view, fit)) is not None:
         return TorqueEvidence(gear=gear)
     if -np.sign(view.gamma) * fit.scores[LINEAR] < -1:
@@ -95,21 +108,24 @@ def compare_torque(positions: Positions) -> TorqueEvidence:
         asymmetry=asymmetry,
         torque_delay=of_torque,
         encoder_delay=of_encoder,
-        inertia=_inertia(view, fit),
+        inertia=inertia,
     )
 
 
 def _negative_stiffness(view: LogView, fit: QuickFit) -> TorqueEvidence:
     """Finds a torque of wrong sign, or a wrong deformation if only the stiffness is negative."""
-    port = "tau_e_sensor" if view.has_sensor else "tau"
-    key = f"ports.{port}.sign"
     if view.has_sensor or fit.sign_of_motor < 0:
-        other = Hypothesis(key, -view.configuration.ports[port].sign, "tau", -1.0)
-        return TorqueEvidence(sign=Evidence(fit.stiffness, [other]))
-    keys = ("ports.theta.gear_ratio", "ports.q.gear_ratio", key)
+        return TorqueEvidence(sign=_other_sign(view, fit))
+    keys = ("ports.theta.gear_ratio", "ports.q.gear_ratio", "ports.tau.sign")
     return TorqueEvidence(
         deformation=Evidence(fit.stiffness, [Hypothesis(each, None) for each in keys])
     )
+
+
+def _other_sign(view: LogView, fit: QuickFit) -> Evidence:
+    port = "tau_e_sensor" if view.has_sensor else "tau"
+    sign = -view.configuration.ports[port].sign
+    return Evidence(fit.stiffness, [Hypothesis(f"ports.{port}.sign", sign, "tau", -1.0)])
 
 
 _LEAST_GEAR = 2e-3
@@ -173,6 +189,7 @@ def _delay_of_torque(view: LogView, fit: QuickFit) -> Delay | None:
     # Another form of friction or another form of spring must not explain the torque too.
     others = [with_form(view, form) for form in few_frictions(fit.form)]
     others.append(with_all_powers(view, fit.form))
+    others.append(with_damped_spring(view, fit.form))
     if not all(explains(other, late.fit) for other in others):
         return None
     delay = float(f"{view.configuration.ports['tau'].delay + late.value:.3g}")
@@ -197,7 +214,7 @@ def _delay_of_encoder(view: LogView, fit: QuickFit) -> Delay | None:
     without = with_form(view.earlier("q", lag), fit.form)
     is_better = explains(fit.fit, without)
     if not is_better and without.error < fit.fit.error:
-        is_better = explains(with_known(view, fit.form, "D_theta", 0.0), fit.fit)
+        is_better = explains(with_known_friction(view, fit.form, 0.0), fit.fit)
     if not is_better:
         return None
     ports = view.configuration.ports
@@ -226,12 +243,13 @@ def _inertia(view: LogView, fit: QuickFit) -> Inertia | None:
     given = float(view.parameters["motor.B"])
     if not given > 0 or float(view.parameters["prior.B"]) >= WIDE:
         return None
-    nearest = _nearest(view, fit, given)
+    free = with_free_inertia(view, fit.form)
+    nearest = _nearest(view, fit.form, free, given)
     if nearest is None or distance(nearest, given) < _DIFFERENT:
         return None
-    if not explains(with_known(view, fit.form, "B", given), fit.fit):
+    if not explains(with_known_inertia(view, fit.form, given), free):
         return None
-    B = fit.fit.value["B"]
+    B = free.value["B"]
     of_motor = Hypothesis("motor.B", float(f"{B:.3g}"))
     gamma = abs(view.gamma)
     geared = [gear for gear in (gamma, 1 / gamma) if distance(B, gear * given) < _LIKE]
@@ -244,14 +262,14 @@ def _inertia(view: LogView, fit: QuickFit) -> Inertia | None:
     return Inertia(B, [of_motor, constant], given, is_geared=False)
 
 
-def _nearest(view: LogView, fit: QuickFit, given: float) -> float | None:
+def _nearest(view: LogView, form: Form, free: Fit, given: float) -> float | None:
     """Returns the inertia nearest to `given` among the ends of the interval and fits with other
     forms of friction. None if the difference is not clear, or an inertia is not above 0."""
-    B, half_width = fit.fit.value["B"], fit.fit.half_width["B"]
+    B, half_width = free.value["B"], free.half_width["B"]
     if not 0 < B - half_width < math.inf or distance(B, given) < _DIFFERENT:
         return None
-    forms = [slower(fit.form), *few_frictions(fit.form)]
-    inertias = [with_form(view, form).value["B"] for form in forms]
+    forms = [slower(form), *few_frictions(form)]
+    inertias = [with_free_inertia(view, other).value["B"] for other in forms]
     inertias += [B - half_width, B + half_width]
     if not all(inertia > 0 for inertia in inertias):
         return None
