@@ -13,6 +13,7 @@ from sigmahat.files import toml_file
 from sigmahat.guess.columns import read_columns
 from sigmahat.guess.guess import guess
 from sigmahat.guess.template import write
+from sigmahat.recording.configuration import read_configuration
 from sigmahat.recording.estimator_parameters import parameters
 from sigmahat.recording.log import LogInMemory
 from sigmahat.recording.several_joints import of_joint
@@ -28,12 +29,18 @@ def read(path: str = "log.toml", joint: str = "") -> Any:
 
 def test_steps_and_turns_of_encoders(shell: Shell) -> None:
     degrees = np.mod(np.round(2000 * MOTION * 4096 / 360) * 360 / 4096, 360)
-    write_log({"t": T, "theta_deg": degrees, "q": MOTION, "tau": MOTION}, Path("log.parquet"))
+    log = {"t": T, "theta_deg": degrees, "q_deg": MOTION, "motor_Nm": MOTION}
+    write_log(log, Path("log.parquet"))
     shell.run("init log.parquet")
     found = read()
     theta = found["ports"]["theta"]
     assert (theta["wrap"], theta["unit"], theta["gear_ratio"]) == (360, "deg", 2000)
-    assert found["parameters"]["encoder"] == {"theta": 4096 * 2000, "q": 0}
+    assert found["parameters"]["encoder"] == {"q": 0}
+    assert parameters(read_configuration("log.toml"))["encoder.theta"] == 4096 * 2000
+    # The counts follow from the step, so another gear needs no other edit.
+    text = Path("log.toml").read_text().replace("gear_ratio = 2000", "gear_ratio = 50")
+    Path("log.toml").write_text(text)
+    assert parameters(read_configuration("log.toml"))["encoder.theta"] == 4096 * 50
     assert found["parameters"]["rls"]["m"] == 1
 
 

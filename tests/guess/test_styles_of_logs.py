@@ -1,7 +1,7 @@
 """Tests of `sigmahat init` with logs in many formats: few edits lead to the right stiffness.
 
 The tests simulate joints independently of the package. After `init`, a test adds values of the data
-sheet to the configuration and edits at most two other keys.
+sheet and answers to questions to the configuration, and edits at most two other keys.
 """
 
 from collections.abc import Callable, Mapping
@@ -139,12 +139,13 @@ class Style:
     file: str  # the suffix selects the file format
     log: Callable[[Motion], Columns]
     ports: Mapping[str, tuple[str, str | None]]  # expected column and unit of each port
-    sheet: Mapping[str, Any]  # keys to set to data sheet values
+    sheet: Mapping[str, Any]  # keys to set to data sheet values, and to answers
     edits: Mapping[str, Any] = field(default_factory=dict)  # other keys to edit
     joint: str | None = None  # for --joint
 
 
 CURRENT = {"ports.tau.torque_constant": TORQUE_CONSTANT}
+RADIANS = {"ports.theta.unit": "rad", "ports.q.unit": "rad"}  # one answer
 STYLES = [
     Style(
         *("knee.csv", knee),
@@ -157,7 +158,7 @@ STYLES = [
         {"theta": ("/joint_states/knee_motor/position", "rad")}
         | {"q": ("/joint_states/knee_link/position", "rad")}
         | {"tau": ("/joint_states/knee_motor/effort", "N.m")},
-        {"motor.gamma": GEAR},
+        {"motor.gamma": GEAR, "ports.tau.gear_ratio": 1},
         joint="knee",
     ),
     Style(
@@ -169,13 +170,13 @@ STYLES = [
     Style(
         *("essai.csv", french),
         {"theta": ("position_moteur", "rad"), "q": ("position_articulation", "rad")}
-        | {"theta_c": ("bras_de_levier_mm", "mm"), "tau": ("couple_moteur", "N.m")},
-        {"motor.gamma": GEAR},
+        | {"theta_c": ("bras_de_levier_mm", "mm"), "tau": ("couple_moteur", "FILL IN")},
+        {"motor.gamma": GEAR, "ports.tau.unit": "N.m"},
     ),
     Style(
         *("log.parquet", nothing_but_numbers),
-        {"theta": ("data4", "rad"), "q": ("data1", "rad"), "tau": ("data2", "N.m")},
-        {"motor.gamma": GEAR},
+        {"theta": ("data4", "FILL IN"), "q": ("data1", "FILL IN"), "tau": ("data2", "FILL IN")},
+        {"motor.gamma": GEAR, "ports.tau.gear_ratio": 1, **RADIANS, "ports.tau.unit": "N.m"},
     ),
     Style(
         *("scope.csv", drive_objects),
@@ -183,19 +184,21 @@ STYLES = [
         | {"q": ("Axis 1.Additional position actual value", "counts")}
         | {"tau": ("Axis 1.Torque actual value", None)},
         {"ports.theta.counts_per_turn": 2**20, "ports.theta.gear_ratio": GEAR}
-        | {"ports.q.counts_per_turn": 2**19, "ports.tau.scale": 2.0 / 1000},
+        | {"ports.q.counts_per_turn": 2**19, "ports.tau.scale": 2.0 / 1000}
+        | {"ports.tau.gear_ratio": 1},
     ),
     Style(
         *("capture.mat", lambda m: {n.rpartition(".")[2]: x for n, x in firmware(m).items()}),
-        {"theta": ("posEstimate", "rad"), "q": ("posAbs", "rad"), "tau": ("IqMeasured", "A")},
+        {"theta": ("posEstimate", "FILL IN"), "q": ("posAbs", "FILL IN")}
+        | {"tau": ("IqMeasured", "A")},
         {**CURRENT, "ports.theta.gear_ratio": GEAR},
         {"ports.theta.unit": "turn", "ports.q.unit": "turn"},
     ),
     Style(
         *("run.h5", simulink),
-        {"theta": ("logsout.PhiMot.Data", "rad"), "q": ("logsout.PhiLast.Data", "rad")}
-        | {"tau": ("logsout.MMot.Data", "N.m")},
-        {"ports.theta.gear_ratio": GEAR},
+        {"theta": ("logsout.PhiMot.Data", "FILL IN"), "q": ("logsout.PhiLast.Data", "FILL IN")}
+        | {"tau": ("logsout.MMot.Data", "FILL IN")},
+        {"ports.theta.gear_ratio": GEAR, **RADIANS, "ports.tau.unit": "N.m"},
     ),
 ]
 

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import pytest
 import tomlkit
 
 from checked_logs import knee_log
@@ -10,7 +11,16 @@ from sigmahat.recording.configuration import read_document
 from sigmahat.recording.readers.formats import open_log
 from sigmahat.recording.several_joints import of_joint
 from sigmahat.setup_page.background import guessed
-from sigmahat.setup_page.edits import comment_of, remove_value, set_value, to_fill_in, value_of
+from sigmahat.setup_page.edits import (
+    Field,
+    comment_of,
+    items,
+    remove_value,
+    set_value,
+    to_fill_in,
+    value_of,
+)
+from sigmahat.setup_page.inputs import Input
 from sigmahat.setup_page.setup import Setup
 
 FILE = """\
@@ -67,16 +77,34 @@ def setup_of(columns: dict[str, object], folder: Path) -> Setup:
 
 def test_a_unit_brings_the_keys_that_it_needs(tmp_path: Path) -> None:
     setup = setup_of(dict(knee_log()), tmp_path)
-    assert setup.get("encoder.q") == 262144
+    assert setup.get("ports.q.step") == pytest.approx(360 / 262144, rel=1e-9)
     setup.set("ports.q.unit", "counts")
     assert setup.get("ports.q.counts_per_turn") == 0
-    assert setup.get("encoder.q") is None
+    assert setup.get("encoder.q") is None and setup.get("ports.q.step") is None
     assert "ports.q.counts_per_turn" in setup.open_keys
     setup.set("ports.q.unit", "deg")
     assert setup.get("ports.q.counts_per_turn") is None
     assert setup.get("encoder.q") == 0
     setup.set("ports.tau.unit", "N.m")
     assert setup.get("ports.tau.torque_constant") is None
+
+
+def test_an_open_question_is_a_choice_to_be_made(tmp_path: Path) -> None:
+    """GIVEN a unit that only the user knows, THEN it stays open until the user chooses one."""
+    log = knee_log()
+    columns = {"t": log["t"], "theta": log["motor_counts"], "q_deg": log["link_deg"]}
+    setup = setup_of({**columns, "tau": 0.05 * log["current"]}, tmp_path)
+    assert {"ports.tau.unit", "ports.tau.gear_ratio"} <= set(setup.open_keys)
+    assert setup.get("ports.tau.unit") is None
+    unit = Input(setup, "ports.tau.unit", Field("unit", "unit", "N.m", items(["N.m", "A"]), str))
+    unit.show()
+    assert (unit.widget.value, unit.widget.css_classes) == ("FILL IN", ["open"])
+    unit.widget.value = "N.m"
+    unit.show()
+    assert (unit.widget.value, unit.widget.css_classes) == ("N.m", [])
+    assert ("FILL IN", "choose") not in unit.widget.options
+    setup.set("ports.tau.gear_ratio", 1.0)
+    assert not {"ports.tau.unit", "ports.tau.gear_ratio"} & set(setup.open_keys)
 
 
 def test_another_column_is_guessed_anew(tmp_path: Path) -> None:

@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from sigmahat.checks.contradictions import of_gears, of_positions, of_swap, of_torque
+from sigmahat.checks.assumptions import of_ports
+from sigmahat.checks.contradictions import of_gears, of_positions, of_sizes, of_swap, of_torque
 from sigmahat.checks.findings import Checked, Finding, Kind, Severity
 from sigmahat.checks.samples import at_rest, of_columns
 from sigmahat.checks.text import DOUBTS
@@ -18,7 +19,7 @@ from sigmahat.motor.inertia import is_inertia_given
 from sigmahat.motor.log_view import LogView, liveliest_part
 from sigmahat.motor.noise import variance
 from sigmahat.motor.quantities import WIDE
-from sigmahat.recording.configuration import PORTS, Configuration
+from sigmahat.recording.configuration import Configuration
 from sigmahat.recording.estimator_parameters import all_parameters
 from sigmahat.recording.log import Log, LogError
 from sigmahat.recording.replay import estimator_for, play
@@ -134,6 +135,7 @@ def _of_motion(view: LogView, recorded: Sequence[Finding]) -> Iterator[Finding]:
             yield each
     if "ports.q.gear_ratio" not in keys:
         yield from of_gears(view)
+    yield from of_sizes(compared)
     yield from of_torque(compared)
 
 
@@ -150,11 +152,7 @@ def _rests_on(view: LogView, start: Mapping[str, Value], per_gain: float) -> Ite
     key = "ports.tau.torque_constant" if is_current else "prior.torque_gain"
     gain = float(parameters["prior.torque_gain"])
     yield Finding(Kind.TORQUE_GAIN, Severity.RESTS_ON, key, per_gain, "", gain)
-    if {"theta", "q"} <= given.keys():
-        theta, q = (f"{name} in {given[name].unit or PORTS[name]}" for name in ("theta", "q"))
-        yield Finding(
-            Kind.UNIT, Severity.RESTS_ON, "ports.theta.unit", 1.0, "", about=f"{theta} and {q}"
-        )
+    yield from of_ports(given)
     for name in ("B", "D_theta"):
         is_other = parameters[f"motor.{name}"] == start[f"motor.{name}"]
         if (

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from sigmahat.checks.findings import Finding, Kind, Severity
 from sigmahat.motor.hypotheses.hypothesis import Evidence, distance
 from sigmahat.motor.hypotheses.positions import Positions, swapped
+from sigmahat.motor.hypotheses.size import implausible_sizes
 from sigmahat.motor.hypotheses.torque import Delay, Inertia, Zero, compare_torque, is_friction_known
 from sigmahat.motor.log_view import LogView
 
@@ -63,6 +64,13 @@ def of_gears(view: LogView) -> Iterator[Finding]:
             keys.reverse()
         (key, right), other = keys
         yield Finding(Kind.GEAR, Severity.WRONG, key, other[1], "", right, right, [other], name)
+
+
+def of_sizes(positions: Positions) -> Iterator[Finding]:
+    """Finds a torque, an inertia or a deformation that is implausible for any joint."""
+    for size in implausible_sizes(positions):
+        severity = Severity.WRONG if size.is_certain else Severity.NOTE
+        yield finding(Kind.SIZE, severity, size, size.unit, size.usual, size.size.value)
 
 
 def of_torque(positions: Positions) -> Iterator[Finding]:

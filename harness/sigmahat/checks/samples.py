@@ -29,10 +29,11 @@ def of_columns(view: LogView) -> Iterator[Finding]:
         values = false_samples(values, is_position, port.wrap).left_out(values)
         finite = np.isfinite(values)
         values = values if finite.all() else values[finite]  # avoids a copy of a long log
-        if is_position:
+        if name in ("theta", "q", "phi"):
             step = known_step(values)
             yield from list(_of_spikes(name, port, values, step)) or _of_jump(view, name, values)
-            yield from _of_step(view, name, step)
+            if is_position:
+                yield from _of_step(view, name, step)
         if name == "tau" and is_only_noise(values):
             key, size = f"ports.{name}.column", float(np.std(values))
             yield Finding(Kind.NO_TORQUE, Severity.NOTE, key, size, port.unit or "N.m")

@@ -67,6 +67,8 @@ def _number(value: float | None, unit: str) -> str:
 
 def _what(f: Finding) -> str:
     """Formats the sentence for the kind of the finding, with measured and expected values."""
+    if f.kind is Kind.PORT:
+        return _port(f)
     template = _SPECIAL.get((f.kind, f.about)) or _SENTENCES[f.kind]
     if f.kind is Kind.TORQUE_LAG and f.measured < 0:
         template = "the torque is {ms} earlier than the motion explains, or the spring is damped"
@@ -87,6 +89,29 @@ def _what(f: Finding) -> str:
         in_row="" if f.row is None else f" in row {f.row}",
         gain=f"known to {100 * f.expected:.3g} %" if f.expected else "taken as exact",
     )
+
+
+def _port(f: Finding) -> str:
+    """Says in plain words what a configuration says of a port."""
+    torque = {"tau": "of the motor, before the gear", "tau_e_sensor": "of the spring"}
+    position = {
+        "theta": "the position of the motor, after the gear",
+        "q": "the position of the link",
+        "phi": "the deformation, q - theta",
+    }
+    is_torque = f.about in torque
+    if f.about == "tau" and f.measured != 1:
+        side = f"of the joint, after a gear of {f.measured:.6g}"
+    elif f.about == "theta" and f.measured != 1:
+        side = f"the position of the motor's shaft, before a gear of {f.measured:.6g}"
+    else:
+        side = torque[f.about] if is_torque else position[f.about]
+    if f.expected is None:
+        what = f"the torque {side}" if is_torque else side
+        return f"{f.about} is {what}, in {f.unit}"
+    if is_torque:
+        return f"1 {f.unit or 'in the column'} is {f.expected:.6g} N.m, the torque {side}"
+    return f"{f.about} is {side}; 1 in the column is {f.expected:.6g} rad"
 
 
 _SPECIAL = {
@@ -120,7 +145,7 @@ _SENTENCES: Mapping[Kind, str] = {
     Kind.INERTIA: _INERTIA,
     Kind.TORQUE_SCALE: f"{_INERTIA}, as if the torque were geared twice or not at all",
     Kind.OTHER_ROBOT: "{value:.4g} is the start value, of another robot",
-    Kind.UNIT: "{about}; a wrong unit of both changes nothing but the stiffness",
+    Kind.SIZE: "the {about} is {measured}, of usual joints at most {expected}",
     Kind.STEP: "the values of {about} change in steps of {measured}, the configured encoder has "
     "{expected}",
     Kind.JUMP: "{about} jumps by {measured}{in_row}, as a counter that starts again",

@@ -53,6 +53,10 @@ def init(log: Path, config: Path, joint: str | None, force: bool) -> None:
         common.refuse_to_overwrite(config, force, "--config")
         write_whole(template.write(opened, columns, guessed), config)
     notes = [*(note.in_words for note in opened.notes), *columns.unreadable]
+    for each in guessed.values():
+        silent = template.silent_torque(columns, each)
+        if silent is not None:
+            notes.append(f"column {silent!r} is the same throughout: the log has no torque")
     common.answer("\n".join([*notes, _text(log, guessed, config)]))
 
 
@@ -73,10 +77,11 @@ def _guessed(joint: JointGuess) -> Iterator[str]:
     if joint.name:
         yield f"joint {joint.name}"
     for port, each in joint.ports.items():
-        yield f"{port:13} {each.column} [{each.unit or 'unit not known'}]"
+        unit = "unit not known" if each.unit is None or each.is_asked else each.unit
+        yield f"{port:13} {each.column} [{unit}]"
     if not {"theta", "q"} & joint.ports.keys():
         yield "no position moves: the joint is at rest, or the log has no column of a position"
-    elif {"theta", "tau"} <= joint.ports.keys() and "q" not in joint.ports:
+    elif {"theta", "tau"} <= joint.ports.keys() and not {"q", "phi"} & joint.ports.keys():
         yield "no position of a link moves: it is locked, its encoder is dead, or not recorded"
     period = period_of(joint)
     if "CHECK" in period:

@@ -16,7 +16,7 @@ from sigmahat.guess.ports import PortGuess, guess_ports
 from sigmahat.guess.roles import Roles, assign, chosen_roles
 from sigmahat.recording.log import Log, LogError
 
-_OF_A_JOINT = ("position", "torque", "current", None)
+_OF_A_JOINT = ("position", "deformation", "torque", "current", None)
 
 
 def joints_of_log(columns: Sequence[Column], T: float) -> dict[str, Roles]:

@@ -74,3 +74,30 @@ def scale_of_derivative(x: Array, v: Array, T: float) -> float | None:
         return None
     fitted = line(smooth(x, T, 1), smooth(v))
     return fitted.slope if fitted.correlation**2 > _DERIVATIVE**2 else None
+
+
+_CLEAR = 10.0  # least ratio of a coefficient to its standard error
+
+
+def share_of_motor(theta: Array, phi: Array) -> float | None:
+    """Computes how much of a fast motion of the motor the deformation shows; None if not clear.
+
+    The link is too heavy to follow a fast motor, so phi = q - theta changes by -theta there. The
+    equation of the link (1), with q = theta + phi and gravity as a linear spring, says the same at
+    all frequencies: phi'' = -theta'' - (K / M) phi - ..., whose coefficient of theta'' is returned.
+    In other units, or with theta before its gear, it is -1 times the ratio of the units and 1 /
+    gear; it is positive for theta - q.
+    """
+    if len(theta) < 4 * _SMOOTH:
+        return None
+    x = np.array([theta, phi])
+    (x_0, phi_0), (x_1, phi_1), (x_2, phi_2) = (smooth(x, 1.0, order) for order in (0, 1, 2))
+    regressors = np.column_stack([x_2, phi_0, x_0, phi_1, x_1, np.ones_like(x_0)])
+    scales = np.linalg.norm(regressors, axis=0) + 1e-300
+    solved, rest, rank, _ = np.linalg.lstsq(regressors / scales, phi_2, rcond=None)
+    if rank < regressors.shape[1] or not len(rest):
+        return None
+    inverse = np.linalg.inv((regressors / scales).T @ (regressors / scales))
+    # Smoothed errors are correlated: there are about as many independent ones as windows.
+    error = float(np.sqrt(inverse[0, 0] * rest[0] * _SMOOTH / len(phi_2)))
+    return float(solved[0] / scales[0]) if abs(solved[0]) > _CLEAR * error else None

@@ -14,7 +14,7 @@ from sigmahat.motor.hypotheses.drive import Drive, drive
 # Points of a column as a candidate for a port.
 _SAID, _SUGGESTED, _QUANTITY = 4.0, 2.0, 1.0
 _REFERENCE, _COMPUTED, _COPY, _APART = -6.0, -3.0, -5.0, -2.0
-_OF_PORTS, _NO_PORT = ("position", "torque", "current"), -8.0
+_OF_PORTS, _NO_PORT = ("position", "deformation", "torque", "current"), -8.0
 _CLOSE, _ALIKE, _UNLIKE = 0.98, 0.9, 0.7
 """Correlations of two columns that are sure, likely, and unlikely positions of one joint."""
 _SAME = 0.995  # largest correlation of a torque with a position
@@ -37,7 +37,7 @@ class Roles:
     @property
     def is_complete(self) -> bool:
         torque = "tau" in self.ports or "tau_e_sensor" in self.ports
-        return torque and "theta" in self.ports and "q" in self.ports
+        return torque and len({"theta", "q", "phi"} & self.ports.keys()) == 2
 
 
 def assign(columns: Sequence[Column], T: float) -> Roles:
@@ -45,8 +45,10 @@ def assign(columns: Sequence[Column], T: float) -> Roles:
     moving = _few([each for each in columns if each.facts.varies and len(each.window)])
     positions = _positions(moving, T)
     ports: dict[str, Role] = dict(_pair(positions))
+    ports |= _deformation(moving, ports)
     taken = {role.column.name for role in ports.values()}
     rest = [each for each in moving if each.name not in taken]
+    rest = [each for each in rest if each.meaning.quantity != "deformation"]
     ports |= _setting(rest, ports)
     taken |= {role.column.name for role in ports.values()}
     ports |= _torques([each for each in rest if each.name not in taken], ports, T)
@@ -55,7 +57,7 @@ def assign(columns: Sequence[Column], T: float) -> Roles:
     if swapped and 1 - _drive(swapped).explained < _BETTER * (1 - found.explained):
         ports = swapped
         found = _drive(ports)
-    order = ("theta", "q", "theta_c", "tau", "tau_e_sensor")
+    order = ("theta", "q", "phi", "theta_c", "tau", "tau_e_sensor")
     return Roles({port: ports[port] for port in order if port in ports}, found)
 
 
@@ -99,10 +101,15 @@ def _swapped(ports: Mapping[str, Role]) -> dict[str, Role]:
 
 
 def _drive(ports: Mapping[str, Role]) -> Drive:
-    if not {"theta", "q", "tau"} <= ports.keys():
+    if "tau" not in ports or len(ports.keys() & {"theta", "q", "phi"}) < 2:
         return Drive(0.0, 0)
-    theta, q, tau = (ports[port].column.window for port in ("theta", "q", "tau"))
-    return drive(theta, q, tau)
+    window = {port: role.column.window for port, role in ports.items()}
+    if "phi" not in ports:
+        return drive(window["theta"], window["q"], window["tau"])
+    if "theta" in ports:  # one sign of phi explains the torque as well as the other
+        return drive(window["theta"], window["theta"] + window["phi"], window["tau"])
+    q, phi = window["q"], window["phi"]
+    return max((drive(q - x, q, window["tau"]) for x in (phi, -phi)), key=lambda d: d.explained)
 
 
 def _positions(columns: Sequence[Column], T: float) -> list[Column]:
@@ -142,6 +149,18 @@ def _pair(columns: Sequence[Column]) -> Mapping[str, Role]:
         for each in (columns[place] for place in best)
     )
     return {"theta": theta, "q": q}
+
+
+def _deformation(columns: Sequence[Column], ports: Mapping[str, Role]) -> dict[str, Role]:
+    """Finds the deformation by its name, in place of the position that the log does not have."""
+    named = [each for each in columns if each.meaning.quantity == "deformation"]
+    measured = [each for each in named if not each.meaning.reference]
+    if not measured or {"theta", "q"} <= ports.keys():
+        return {}
+    best = max(measured, key=_named)
+    if ports:
+        return {"phi": Role(best, "by its name")}
+    return {"q": Role(best, "a deformation without a position: theta is 0")}
 
 
 def _side(column: Column, side: str) -> float:

@@ -14,6 +14,7 @@ from sigmahat.guess.columns import Column, Columns, likely_unit
 from sigmahat.guess.guess import JointGuess
 from sigmahat.guess.ports import PortGuess
 from sigmahat.recording import configuration
+from sigmahat.recording.deformation import missing_position
 from sigmahat.recording.log import Log
 from sigmahat.recording.several_joints import together
 from sigmahat.recording.units import TURN, seconds
@@ -24,6 +25,7 @@ MEANINGS = {
     "theta_c": "motor that sets the stiffness",
     "tau": "torque of the principal motor, on its axis before the gear",
     "tau_e_sensor": "measured flexibility torque, for modality Sensor",
+    "phi": "deformation q - theta, in place of the position that is not measured",
 }
 """Descriptions of the ports for the user."""
 _IN_RAD = {unit: 2 * math.pi / turn for unit, turn in TURN.items()}
@@ -43,12 +45,36 @@ def write(log: Log, columns: Columns, joints: Mapping[str, JointGuess]) -> str:
         "several": several,
     }
     texts = {
-        name: _TEMPLATES.get_template("configuration.jinja").render(**head, guess=guess)
+        name: _TEMPLATES.get_template("configuration.jinja").render(
+            **head, guess=guess, constant=_constant(columns, guess)
+        )
         for name, guess in joints.items()
     }
     if several:
         return tomlkit.dumps(together({name: tomlkit.parse(text) for name, text in texts.items()}))
     return next(iter(texts.values()))
+
+
+def _constant(columns: Columns, joint: JointGuess) -> dict[str, str]:
+    """Describes the columns that have no signal although their name is of a missing port."""
+    silent = silent_torque(columns, joint)
+    if silent is None:
+        return {}
+    low = columns.facts[silent].low
+    return {"tau": f"{silent} is {low:g} throughout, which is no torque: name another column"}
+
+
+def silent_torque(columns: Columns, joint: JointGuess) -> str | None:
+    """Returns the column of a torque or current of the joint that is constant; None without one, or
+    if another column has the torque."""
+    if {"tau", "tau_e_sensor"} & joint.ports.keys():
+        return None
+    for column in columns.signals:
+        of_joint = not joint.name or "_".join(column.meaning.joints) in ("", joint.name)
+        is_constant = column.facts.low == column.facts.high
+        if column.meaning.quantity in ("torque", "current") and of_joint and is_constant:
+            return column.name
+    return None
 
 
 def port_table(name: str, port: PortGuess) -> Table:
@@ -125,14 +151,6 @@ def _largest(port: PortGuess) -> float:
     return float(f"{1.2 * max(abs(port.low - port.zero), abs(port.high - port.zero)):.3g}")
 
 
-def _encoder(port: PortGuess) -> tuple[int, str]:
-    if not port.steps:
-        return 0, "counts per turn; not quantised"
-    gear = port.gear_ratio or port.moves or 1.0
-    where = "" if gear == 1 else f", times a gear of {gear:.4g}"
-    return round(port.steps * gear), f"counts per turn; its step is 1/{port.steps} turn{where}"
-
-
 def _scale_of(set_point: PortGuess) -> float:
     """Chooses a scale with which the largest set-point is between 1 and 100."""
     in_port = _IN_RAD.get(set_point.unit or "", 1.0)
@@ -148,6 +166,7 @@ _TEMPLATES = environment(Path(__file__).parent, autoescape=False).overlay(
     trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True
 )
 _TEMPLATES.filters["one_line"] = lambda text: " ".join(text.splitlines())
+_TEMPLATES.filters["short"] = lambda number: float(f"{number:.12g}")
 _TEMPLATES.globals |= {
     "MEANINGS": MEANINGS,
     "UNITS": configuration.PORTS,
@@ -158,6 +177,6 @@ _TEMPLATES.globals |= {
     "start": lambda name: float(installed_model("StiffnessEstimator").variable(name).start),
     "period_of": period_of,
     "largest": _largest,
-    "encoder": _encoder,
+    "missing_position": missing_position,
     "scale_of": _scale_of,
 }

@@ -21,6 +21,8 @@ _UNIT_OF = {
 _INSIDE, _AT_AN_END, _PART = 5, 4, 3  # least numbers of letters of a word in a longer word
 _LETTERS = str.maketrans({"ß": "ss", "°": "deg", "µ": "u", "μ": "u", "θ": "theta", "τ": "tau"})
 _BRACKET = re.compile(r"[\[({<]([^\[\](){}<>]*)[\])}>]\s*$")
+_JOINT_STATE = re.compile(r"\.(position|velocity|effort)\[[^\[\]]*[^\d\[\]][^\[\]]*\]$")
+"""Columns of a sensor_msgs/JointState, as readers/bags.py names them."""
 _TOKEN = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+|\d+")
 
 
@@ -28,13 +30,16 @@ _TOKEN = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+|\d+")
 class Meaning:
     """Meaning of the name of a column. A field is None if the name contains no such word."""
 
-    quantity: str | None  # time, index, position, velocity, acceleration, torque, current, or other
+    quantity: str | None
+    """time, index, position, deformation, velocity, acceleration, torque, current, or other."""
     side: str | None  # motor, link, setting (what sets the stiffness), or sensor (of the torque)
     suggested: str | None  # motor or link, from a word that only suggests this side
     unit: str | None  # unit, as in configurations
     speed: str | None  # unit of a velocity: rad for rad/s, or turn/min
     reference: bool  # whether the signal is a reference, not a measurement
     computed: bool  # whether the signal is an estimate, or the truth of a simulation
+    effort: bool  # whether a torque is called effort, as in ROS
+    message: bool  # whether the signal is of a JointState of ROS, in rad and N.m
     joints: tuple[str, ...]  # words that are names of joints
     rest: tuple[str, ...]  # unknown words and numbers, and words that are names of joints
 
@@ -59,6 +64,7 @@ def meaning(name: str) -> Meaning:
         before = text
         if entry is not None:
             entries.append(entry)
+    roles = {role for entry in entries if (role := entry.get("role"))}
     quantity = _quantity(entries)
     if _is_time(re.split(r"[./]", name)[-1]):
         quantity = "time"
@@ -66,10 +72,15 @@ def meaning(name: str) -> Meaning:
         quantity = unit.foreign
     elif quantity not in ("other", "velocity", "acceleration"):
         quantity = _UNIT_OF.get(unit.name or "", quantity)
-    roles = {entry.get("role") for entry in entries}
     side = _first("side", ("sensor", "setting", "motor", "link"), entries)
+    if "deformation" in roles:
+        if quantity in (None, "position") and unit.name != "mm":
+            quantity = "deformation"
+        elif quantity == "torque" and side is None:
+            side = "sensor"
     suggested = _first("suggests", ("motor", "link"), entries)
-    said = "reference" in roles, "computed" in roles
+    is_message = "message" in roles or _JOINT_STATE.search(name) is not None
+    said = "reference" in roles, "computed" in roles, "effort" in roles, is_message
     return Meaning(
         quantity, side, suggested, unit.name, unit.speed, *said, tuple(joints), tuple(rest)
     )

@@ -17,8 +17,9 @@ from sigmahat.live.changes import ChangesOnLine
 from sigmahat.live.clock import Clock
 from sigmahat.live.events import Event, in_seconds
 from sigmahat.live.messages import Columns
-from sigmahat.recording.configuration import PORTS, Configuration
+from sigmahat.recording.configuration import INPUTS, Configuration
 from sigmahat.recording.counters import WholePeriods
+from sigmahat.recording.deformation import with_positions
 from sigmahat.recording.estimator_parameters import all_parameters
 from sigmahat.recording.log import LogError
 from sigmahat.recording.replay import estimator_for
@@ -187,8 +188,8 @@ class LiveJoint:
     def _tick(self, start: float) -> Iterator[News]:
         if self._whole_periods is not None:
             self._whole_periods.put_right_one(self._values)
-        values = dict(zip(self.ports, self._values.tolist(), strict=True))
-        outputs = self._estimator.tick(**{name: values.get(name, 0.0) for name in PORTS})
+        values = with_positions(dict(zip(self.ports, self._values.tolist(), strict=True)))
+        outputs = self._estimator.tick(**{name: values.get(name, 0.0) for name in INPUTS})
         t = start + self.T * self._ticks
         self._ticks += 1
         self._skipped += not outputs["valid"]

@@ -237,7 +237,7 @@ def _check(configuration: Configuration, is_of_spring: bool, torque_constant: bo
     if torque_constant:
         torques.append("tau_e_sensor")
     for name in ("theta", "q", *torques):
-        if name not in configuration.ports:
+        if name not in configuration.inputs:
             why = "; a torque constant needs a measured torque" if torque_constant else ""
             raise LogError(f"{configuration.path}: identify needs [ports.{name}]{why}; add it")
     if torque_constant and configuration.ports["tau"].torque_constant is None:

@@ -27,7 +27,7 @@ _ABOVE = 1.4
 _ROOM = 1.2  # ratio of a range to the largest value in the log, because motions differ
 _KNEES = ("range.knee", "range.knee_2")
 _OF_SET_POINT = ("rls.m", "range.setPoint", "range.setPoint_center")
-_ERROR_OF_B = 0.15
+LEAST_PRIOR_OF_B = 0.15
 """Least relative prior of B: RMS error of B on joints with unmodelled friction or springs. On such
 joints the error of B is up to five times the interval, which includes only random errors."""
 _MIDDLE = "not known: the middle of what identify holds possible"
@@ -70,7 +70,7 @@ def update(document: tomlkit.TOMLDocument, identified: Identified, joint: str = 
             else:
                 values[f"motor.{name}"] = q.value
             if name == "B":  # D_theta gets no prior, because friction changes with temperature
-                values["prior.B"] = max(q.half_width / q.value, _ERROR_OF_B)
+                values["prior.B"] = max(q.half_width / q.value, LEAST_PRIOR_OF_B)
     # The log may be one of several, each at another set-point.
     kept = _OF_SET_POINT if given.get("rls.m") and not identified.set_point_moves else ()
     values = {
@@ -95,11 +95,12 @@ def update(document: tomlkit.TOMLDocument, identified: Identified, joint: str = 
         item = tomlkit.item(_short(constant.value))
         several_joints.set_item(section, ("ports", "tau", "torque_constant"), item)
         written.append("ports.tau.torque_constant")
-    if identified.zero and "q" in whole["ports"]:
-        link = Port(**whole["ports"]["q"].unwrap())
-        zero = tomlkit.item(float(f"{link.zero + identified.zero / scale('q', link):.9g}"))
-        several_joints.set_item(section, ("ports", "q", "zero"), zero)
-        written.append("ports.q.zero")
+    name = "phi" if "phi" in whole["ports"] else "q"
+    if identified.zero and name in whole["ports"]:
+        port = Port(**whole["ports"][name].unwrap())
+        zero = tomlkit.item(float(f"{port.zero + identified.zero / scale(name, port):.9g}"))
+        several_joints.set_item(section, ("ports", name, "zero"), zero)
+        written.append(f"ports.{name}.zero")
     section["identified"] = _record(identified)
     return written
 

@@ -14,6 +14,8 @@ from sigmahat.recording.units import TURN
 
 _LOOKED_AT = 20_000  # approximate number of values that are searched for the step of an encoder
 _FEWEST_COUNTS = 100  # least number of encoder counts per turn
+_EXACTLY = 1e-5  # largest relative difference of a step from a usual one
+_NEARLY = 0.1  # largest difference of counts per turn from a multiple of 100
 _PERIODS = (360.0, 2 * np.pi, *(2.0**k for k in range(8, 33)), 1.0)
 """Usual periods of a counter, in degrees, in radians, in counts, and in turns."""
 _SAME_PERIOD = 0.02  # largest relative difference between a jump and a usual period
@@ -47,8 +49,13 @@ def step_of_encoder(finite: Array, fewest: int) -> float:
     near = ratio < 10  # rounding of text hides the remainder of a larger ratio
     if np.count_nonzero(near) < fewest or np.mean(even[near]) <= 0.95:
         return np.inf
-    # The mean of many steps is more exact than the last digits of the values.
-    return float(np.sum(steps[even]) / np.sum(np.round(ratio[even])))
+    # The mean of many steps is more exact than the last digits of the values, and the more exact
+    # the step is, the larger are the distances of which it tells the multiple.
+    for most in (10.0, 100.0, 1000.0, np.inf):
+        ratio = steps / step
+        even = (np.abs(ratio - np.round(ratio)) < 0.05) & (ratio < most)
+        step = float(np.sum(steps[even]) / np.sum(np.round(ratio[even])))
+    return step
 
 
 def counts_of_steps(step: float, unit: str) -> int:
@@ -60,13 +67,27 @@ def counts_of_steps(step: float, unit: str) -> int:
     return round(counts) if counts >= _FEWEST_COUNTS else 0
 
 
+def is_decimal(step: float) -> bool:
+    """Returns whether a step is that of a decimal place, 1, 2 or 5 times a power of ten: a text is
+    rounded so, whatever its unit is."""
+    if not 0 < step < math.inf:
+        return False
+    digit = step / 10.0 ** math.floor(math.log10(step) + _EXACTLY)
+    return any(abs(digit / place - 1) < _EXACTLY for place in (1, 2, 5))
+
+
 def unit_of_steps(step: float) -> str | None:
-    """Finds the unit in which the steps of an angle are a usual part of a turn, such as 1/4096."""
+    """Finds the unit in which the steps of an angle are a usual part of a turn, such as 1/4096;
+    None for the steps of a decimal place, which occur in any unit."""
+    if is_decimal(step):
+        return None
     for unit in ("deg", "rad", "turn"):
         counts = TURN[unit] / step
         n = round(counts)
-        usual = n and (n & (n - 1) == 0 or n % 100 == 0)
-        if usual and n >= _FEWEST_COUNTS and abs(counts / n - 1) < 1e-5:
+        if n < _FEWEST_COUNTS or abs(counts / n - 1) > _EXACTLY:
+            continue
+        # Among large numbers many are nearly a multiple of 100.
+        if n & (n - 1) == 0 or (n % 100 == 0 and abs(counts - n) < _NEARLY):
             return unit
     return None
 

@@ -17,13 +17,29 @@ from sigmahat.files import toml_file
 from sigmahat.fmi.model import Value
 from sigmahat.fmi.unknown_name import unknown
 from sigmahat.recording import several_joints
+from sigmahat.recording.deformation import missing_position
 from sigmahat.recording.log import LogError
 
-PORTS = {"theta": "rad", "q": "rad", "theta_c": "rad", "tau": "N.m", "tau_e_sensor": "N.m"}
+INPUTS = {"theta": "rad", "q": "rad", "theta_c": "rad", "tau": "N.m", "tau_e_sensor": "N.m"}
 """Inputs of StiffnessEstimator and their units."""
+PORTS = {**INPUTS, "phi": "rad"}
+"""What a column of a log may be, and its unit: an input, or the deformation phi = q - theta, which
+takes the place of the position that is not measured."""
 
 FILL_IN = "FILL IN"
-"""Placeholder for an unknown column, and first words of the comments on missing values."""
+"""Placeholder for an unknown column or unit, and first words of comments on missing values."""
+_ANGLE_UNIT = "rad, mrad, deg or turn"
+QUESTIONS = {
+    **{("unit", port): _ANGLE_UNIT for port in ("theta", "q", "phi")},
+    ("unit", "tau"): "N.m, mN.m or kN.m; A or mA if it is a current, with torque_constant",
+    ("unit", "tau_e_sensor"): "N.m, mN.m or kN.m; or scale in place of unit [N.m]",
+    ("gear_ratio", "tau"): "1 if tau is the torque of the motor, before the gear; the ratio of the "
+    "gear if it is the torque of the joint, after the gear",
+    ("gear_ratio", "theta"): "1 if theta is after the gear, else the ratio of the gear",
+}
+"""The choices for values that neither the names nor the samples of a log may show, by key of a port
+and port. `init` asks for them, and every command refuses a file with an open one."""
+_OF_THE_DATA_SHEET = "the value from the data sheet of your device"
 NOT_YOURS = "not known: of another robot, until identify finds it or you set it"
 """Comment of a motor parameter that the user has not set."""
 WIDE_PRIOR = "wide, because it is not known; make it smaller if you know better"
@@ -39,7 +55,7 @@ _NEEDED = {"Residual": ("theta", "q", "tau"), "Sensor": ("q", "tau_e_sensor"), "
 
 def _not_zero(value: float) -> float:
     if value == 0:
-        raise PydanticCustomError("zero", "fill in the value from the data sheet of your device")
+        raise PydanticCustomError("zero", "not 0")
     return value
 
 
@@ -76,6 +92,8 @@ class Port:
     torque_constant: NotZero | None = None  #: For a current [N.m/A].
     mm_per_turn: NotZero | None = None
     """For a length: travel per turn of the motor. If not given, the port takes the number of mm."""
+    step: NotZero | None = None
+    """Step in which the values change, in the unit of the column: of an encoder, or by rounding."""
     scale: NotZero | None = None
     """Instead of a unit: value of the port, in its unit, per 1 in the column."""
     wrap: NotZero | None = None
@@ -107,10 +125,16 @@ class Configuration:
     parameters: Mapping[str, Value]  #: Start values of `StiffnessEstimator`, by its names.
     joint: str = ""  #: Name of the joint in a file of several joints.
 
+    @property
+    def inputs(self) -> Mapping[str, Port]:
+        """The ports by input of the estimator; that of phi gives the position that follows."""
+        follows = missing_position(self.ports)
+        return {follows if name == "phi" and follows else name: p for name, p in self.ports.items()}
+
     def need_ports(self, modality: str) -> None:
         """Raises LogError if a port is missing that the modality needs."""
         for name in _NEEDED.get(modality, ()):
-            if name not in self.ports:
+            if name not in self.inputs:
                 raise LogError(
                     f"{self.path}: modality {modality} needs [ports.{name}]; add it, "
                     "or choose another modality in [parameters]"
@@ -158,9 +182,10 @@ def checked_configuration(
             one = f"it is the configuration of one joint, expected no name, got {joint!r}"
             what = one if known == [""] else unknown("joint", joint, known)
         raise LogError(f"{path}: {what}")
-    own = several_joints.of_joint(document, joint)
+    values = several_joints.of_joint(document, joint).unwrap()
+    _refuse_open(values, path)
     try:
-        file = TypeAdapter(_ConfigurationFile).validate_python(own.unwrap())
+        file = TypeAdapter(_ConfigurationFile).validate_python(values)
     except ValidationError as error:
         # A misspelt key is the reason why another key is missing.
         errors = sorted(error.errors(), key=lambda each: each["type"] != _MISSPELT)
@@ -175,8 +200,27 @@ def checked_configuration(
                 "if the signal is constant"
             )
     _refuse_repeated(file, path)
-    values = dict(toml_file.dotted(file.parameters))
-    return Configuration(path, file.time, file.ports, values, joint)
+    if "phi" in file.ports and len(file.ports.keys() & {"theta", "q"}) != 1:
+        raise LogError(
+            f"{path}: phi is q - theta, expected one of [ports.theta] and [ports.q] with "
+            f"[ports.phi], got {'both' if 'q' in file.ports else 'none'}; "
+            f"{'remove' if 'q' in file.ports else 'add'} one of them"
+        )
+    parameters = dict(toml_file.dotted(file.parameters))
+    return Configuration(path, file.time, file.ports, parameters, joint)
+
+
+def _refuse_open(values: Mapping[str, Any], path: Path) -> None:
+    """Raises LogError for a question of `init` without an answer; log.py refuses the columns."""
+    for key, value in toml_file.dotted(values):
+        if value == FILL_IN and not key.endswith(".column"):
+            raise LogError(f"{path}: {key} is {FILL_IN}; fill in {choices(key)}")
+
+
+def choices(key: str) -> str:
+    """Describes the values that a key such as "ports.tau.gear_ratio" may have."""
+    _, port, name = f"..{key}".rsplit(".", 2)
+    return QUESTIONS.get((name, port), _OF_THE_DATA_SHEET)
 
 
 def _refuse_repeated(file: _ConfigurationFile, path: Path) -> None:
@@ -233,7 +277,7 @@ def _explain(error: ErrorDetails) -> str:
     if what == "unknown":
         return error["msg"]
     if what == "zero":
-        return f"{where} is 0; {error['msg']}"
+        return f"{where} is 0; fill in {choices(where)}"
     table = f"a table [{where}]"
     expected = _KINDS.get(what, table if what in ("dict_type", "dataclass_type") else error["msg"])
     return f"{where}: expected {expected}, got {error['input']!r}"

@@ -6,15 +6,16 @@ from sigmahat.estimator.instances import start_values
 from sigmahat.fmi.model import Value, installed_model
 from sigmahat.recording.configuration import Configuration
 from sigmahat.recording.log import LogError
-from sigmahat.recording.units import counts_per_turn
+from sigmahat.recording.units import counts_of_joint
 
 
 def parameters(configuration: Configuration) -> dict[str, Value]:
     """Computes the parameters that differ from the start values of StiffnessEstimator.fmu.
 
     They are the configured parameters, the counts of the encoders, and start values that follow
-    samplePeriod: filters are not faster than the samples. If motor.gamma is 0 or missing, the gear
-    ratio of theta is used.
+    samplePeriod: filters are not faster than the samples. The steps of a measured deformation are
+    those of the position that follows from it. If motor.gamma is 0 or missing, the gear ratio of
+    theta is used.
 
     encoder.theta_c has no effect, but is set because the interface of the FMU contains it.
 
@@ -22,8 +23,8 @@ def parameters(configuration: Configuration) -> dict[str, Value]:
     """
     model = installed_model("StiffnessEstimator")
     start = dict(configuration.parameters)
-    for name, port in configuration.ports.items():
-        counts = counts_per_turn(port) if port.value is None else 0.0  # not rounded
+    for name, port in configuration.inputs.items():
+        counts = counts_of_joint(name, port) if port.value is None else 0.0  # not rounded
         if counts is not None and f"encoder.{name}" in model.variables:
             start.setdefault(f"encoder.{name}", counts)
     theta = configuration.ports.get("theta")

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sigmahat.estimator.estimator import Estimator
-from sigmahat.recording.configuration import PORTS, Configuration
+from sigmahat.recording.configuration import INPUTS, Configuration
 from sigmahat.recording.estimator_parameters import parameters
 from sigmahat.recording.log import LogError
 from sigmahat.recording.sampling import Samples
@@ -49,4 +49,4 @@ def play(
         values = samples.values[first : first + chunk]
         columns = dict(zip(samples.names, values.T, strict=True))
         missing = np.zeros(len(values))
-        yield estimator.run(**{name: columns.get(name, missing) for name in PORTS}).values
+        yield estimator.run(**{name: columns.get(name, missing) for name in INPUTS}).values

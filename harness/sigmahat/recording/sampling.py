@@ -4,7 +4,7 @@ Tick k is at the time t_0 + k T, where t_0 is the first time in the log. Each po
 samples, with times of their own; resampling.py has the rules for the values between them.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from weakref import WeakKeyDictionary
 
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from sigmahat.recording.configuration import Configuration, Port, Time
 from sigmahat.recording.counters import Unwrapping, WholePeriods
+from sigmahat.recording.deformation import with_positions
 from sigmahat.recording.false_samples import false_samples, returns
 from sigmahat.recording.gaps import refused, stretches
 from sigmahat.recording.log import Array, Log, LogError
@@ -110,8 +111,20 @@ def _sample(log: Log, configuration: Configuration, T: float) -> Samples:
                 "check its delay, and time.longest_gap"
             )
     notes += _put_right(values, configuration, T)
+    names = _with_positions(configuration.ports, values)
     notes += _skipped(values, T)
-    return Samples(T, tuple(configuration.ports), values, _tick_of(rows, T, ticks), notes)
+    return Samples(T, names, values, _tick_of(rows, T, ticks), notes)
+
+
+def _with_positions(ports: Iterable[str], values: Array) -> tuple[str, ...]:
+    """Replaces a measured deformation by the position that follows, and returns the names.
+
+    values  of the ports at the ticks [size: ticks x ports]; changed in place
+    """
+    found = with_positions(dict(zip(ports, values.T, strict=True)))
+    for i, column in enumerate(found.values()):
+        values[:, i] = column
+    return tuple(found)
 
 
 def _ticks(log: Log, rows: Array, duration: float, T: float) -> int:

@@ -25,11 +25,17 @@ def seconds(unit: str) -> float:
     return _in("time.unit", unit, "s", _USUAL_TIMES)
 
 
-def counts_per_turn(port: Port) -> float | None:
-    """Returns the counts of the encoder per turn of the joint; None for a port without counts."""
-    if port.unit != "counts" or port.counts_per_turn is None:
+def counts_of_joint(name: str, port: Port) -> float | None:
+    """Returns the counts of the encoder per turn of the joint; None for a port without counts and
+    steps.
+
+    Raises LogError for a unit that does not fit the port.
+    """
+    if port.unit == "counts" and port.counts_per_turn is not None:
+        return port.counts_per_turn * abs(port.gear_ratio)
+    if port.step is None or PORTS[name] != "rad":
         return None
-    return port.counts_per_turn * abs(port.gear_ratio)
+    return round(2 * math.pi / abs(factor(name, port) * port.step)) * abs(port.gear_ratio)
 
 
 def factor(name: str, port: Port) -> float:

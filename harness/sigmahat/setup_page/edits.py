@@ -20,6 +20,7 @@ UNITS: Mapping[str, Sequence[str]] = {
     "theta": _ANGLES,
     "q": _ANGLES,
     "tau": (*_TORQUES, "A", "mA"),
+    "phi": _ANGLES,
     "theta_c": (*_ANGLES, "mm"),
     "tau_e_sensor": _TORQUES,
 }
@@ -54,7 +55,7 @@ OF_PORT = (
     Field("scale", "port per unit of the column", units=(BY_SCALE,)),
     Field("mm_per_turn", "mm per turn of the motor", "number of mm", units=("mm",)),
     Field("zero", "zero, in its unit", "0"),
-    Field("wrap", "starts again after", "never", ports=("theta", "q", "theta_c")),
+    Field("wrap", "starts again after", "never", ports=("theta", "q", "phi", "theta_c")),
     Field("delay", "recorded later by [s]", "0", ports=("tau",)),
 )
 PARAMETERS = (
@@ -122,7 +123,7 @@ def to_fill_in(document: tomlkit.TOMLDocument) -> list[str]:
         key
         for key, value in _values(document)
         if (key.endswith(_NOT_ZERO) and value == 0)
-        or (key.endswith(".column") and value == FILL_IN)
+        or (key.endswith((".column", ".unit")) and value == FILL_IN)
     ]
     # 0 stands for the gear ratio of theta, which must then not be 1.
     if value_of(document, GAMMA) == 0 and value_of(document, "ports.theta.gear_ratio") in (None, 1):

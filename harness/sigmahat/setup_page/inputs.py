@@ -6,6 +6,7 @@ from typing import Any
 
 from bokeh.models import Button, Div, InlineStyleSheet, Row, Select, TextInput, UIElement
 
+from sigmahat.recording.configuration import FILL_IN
 from sigmahat.setup_page.edits import GAMMA, Field
 from sigmahat.setup_page.setup import Setup
 
@@ -75,9 +76,16 @@ class Input:
         value = self._setup.get(self.key)
         text = f"{value:.10g}" if isinstance(value, float) else str(value)
         if self.field.items:
+            is_open = self.key in self._setup.open_keys and not self.key.endswith(".column")
             self._shown = self.field.default if value is None else text
-            if self._shown not in (each for each, _ in self.widget.options):
-                self.widget.options = [*self.widget.options, (text, text)]
+            options = [*self.field.items]
+            if is_open:
+                self._shown = FILL_IN
+                options.insert(0, (FILL_IN, "choose"))
+            elif self._shown not in (each for each, _ in options):
+                options.append((text, text))
+            self.widget.options = options
+            self.widget.css_classes = [_OPEN] if is_open else []
         else:
             is_open = self.key in self._setup.open_keys
             is_default = value is None or (value == 0 and self.key == GAMMA)

@@ -120,8 +120,18 @@ class Setup:
                 from sigmahat.guess.template import port_table
 
                 edits.set_port(self.document, port, port_table(port, guessed))
+                self._set_encoder(port, guessed)
             else:
                 edits.set_value(self.document, f"ports.{port}.column", column)
+
+    def _set_encoder(self, port: str, guessed: "PortGuess") -> None:
+        """Says that a position without counts and steps is exact, as `init` does."""
+        if port not in ("theta", "q"):
+            return
+        if guessed.unit == "counts" or guessed.step is not None:
+            edits.remove_value(self.document, f"encoder.{port}")
+        else:
+            edits.set_value(self.document, f"encoder.{port}", 0)
 
     def _set_unit(self, port: str, unit: str) -> None:
         """Sets a unit, adds the keys that it needs, and removes keys of the unit before."""
@@ -140,6 +150,7 @@ class Setup:
         # With the unit counts, the port gives the counts of its encoder; other units do not.
         if unit == "counts":
             edits.remove_value(self.document, f"encoder.{port}")
+            edits.remove_value(self.document, f"{where}.step")
         elif before == "counts" and port in ("theta", "q"):
             edits.set_value(self.document, f"encoder.{port}", 0)
 

@@ -49,6 +49,8 @@ def other_step(view: LogView, name: str, step: float) -> StepEvidence | None:
     if abs(abs(math.log(angle / expected)) / math.log(180 / math.pi) - 1) < _SAME:
         unit = Hypothesis(f"ports.{name}.unit", "deg" if angle > expected else "rad")
         return StepEvidence(angle, [unit, counts], expected)
+    if port.step is not None and f"encoder.{name}" not in view.configuration.parameters:
+        return StepEvidence(angle, [Hypothesis(f"ports.{name}.step", step)], expected)
     if port.unit == "counts":
         per_turn = Hypothesis(f"ports.{name}.counts_per_turn", None)
         return StepEvidence(angle, [counts, per_turn], expected)

@@ -63,7 +63,7 @@ def still(view: LogView) -> list[str]:
             continue
         values = view.samples.values[:, list(view.samples.names).index(name)]
         known = values[np.isfinite(values)]
-        is_given = view.configuration.ports[name].value is not None
+        is_given = view.configuration.inputs[name].value is not None
         if len(known) and float(np.ptp(known)) == 0 and not is_given:
             names.append(name)
     return names
@@ -123,6 +123,8 @@ def compare_positions(view: LogView) -> Positions:
     if not {"theta", "q"} <= set(view.samples.names):
         return same
     ports = view.configuration.ports
+    if "phi" in ports:
+        return same  # one position follows from the other, so both move alike in any case
     if "tau_e_sensor" in ports and ports["theta"].column == ports["tau_e_sensor"].column:
         return same  # theta is the compliance of a test bench, which drives no link
     slope = _clear_slope(view)

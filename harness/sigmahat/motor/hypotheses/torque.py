@@ -116,6 +116,10 @@ def _negative_stiffness(view: LogView, fit: QuickFit) -> TorqueEvidence:
     """Finds a torque of wrong sign, or a wrong deformation if only the stiffness is negative."""
     if view.has_sensor or fit.sign_of_motor < 0:
         return TorqueEvidence(sign=_other_sign(view, fit))
+    if "phi" in view.configuration.ports:
+        other = Hypothesis("ports.phi.sign", -view.configuration.ports["phi"].sign)
+        of_torque = Hypothesis("ports.tau.sign", None)
+        return TorqueEvidence(deformation=Evidence(fit.stiffness, [other, of_torque]))
     keys = ("ports.theta.gear_ratio", "ports.q.gear_ratio", "ports.tau.sign")
     return TorqueEvidence(
         deformation=Evidence(fit.stiffness, [Hypothesis(each, None) for each in keys])
@@ -136,7 +140,8 @@ _MUCH = 0.3
 
 def _gear(view: LogView, fit: QuickFit) -> Evidence | None:
     """Finds a slightly wrong gear ratio, if the correction explains much of the torque."""
-    if "theta" not in view.configuration.ports:
+    ports = view.configuration.ports
+    if "theta" not in ports or "phi" in ports:
         return None
     error = gear_error(view, fit.form)
     if error is None or not abs(error.value - 1) > error.half_width + _LEAST_GEAR:
@@ -149,7 +154,7 @@ def _gear(view: LogView, fit: QuickFit) -> Evidence | None:
     ]
     if not all(error.fit.error < _MUCH * other for other in others if math.isfinite(other)):
         return None
-    theta = view.configuration.ports["theta"]
+    theta = ports["theta"]
     return Evidence(1 / error.value, [gear_of_slope(theta, error.value, error.half_width)])
 
 
@@ -161,10 +166,11 @@ def _zero(view: LogView, fit: QuickFit) -> Zero | None:
     zero, covered = fit.spring.zero(), fit.spring.covered
     if not math.isfinite(zero) or not is_off(zero, fit.spring.half_width(zero), covered):
         return None
+    ports = view.configuration.ports
     hypotheses = [
         Hypothesis(f"ports.{name}.zero", float(f"{port.zero + angle / scale(name, port):.6g}"))
-        for name, angle in (("q", zero), ("theta", -zero))
-        if (port := view.configuration.ports.get(name)) is not None
+        for name, angle in (("phi", zero), ("q", zero), ("theta", -zero))
+        if (port := ports.get(name)) is not None and ("phi" not in ports or name == "phi")
     ]
     return Zero(zero, hypotheses, covered, abs(fit.stiffness * zero), fit.form.symmetric)
 
@@ -219,8 +225,9 @@ def _delay_of_encoder(view: LogView, fit: QuickFit) -> Delay | None:
         return None
     ports = view.configuration.ports
     hypotheses = [
-        Hypothesis("ports.q.delay", float(f"{ports['q'].delay + lag:.3g}")),
-        Hypothesis("ports.theta.delay", float(f"{ports['theta'].delay - lag:.3g}")),
+        Hypothesis(f"ports.{name}.delay", float(f"{ports[name].delay + later:.3g}"))
+        for name, later in (("q", lag), ("theta", -lag), ("phi", lag))
+        if name in ports
     ]
     least = view.gamma * largest_friction / fit.slope
     return Delay(lag, hypotheses, least, without.error)
