@@ -265,7 +265,11 @@ def test_what_no_log_shows_is_listed() -> None:
     text = RIGHT.replace("motor.B = 1.05e-4\n", "")
     found = [sentence(each) for each in checked(knee_log(), text).of(Severity.RESTS_ON)]
     assert "motor.B: 2.3e-05 is the start value, of another robot" in found
-    assert any(each.startswith("ports.theta.unit: theta in counts and q in deg;") for each in found)
+    theta = "ports.theta.unit: theta is the position of the motor's shaft, before a gear of 100"
+    assert f"{theta}, in counts" in found
+    assert "ports.q.unit: q is the position of the link, in deg" in found
+    current = "ports.tau.gear_ratio: 1 A is 0.05 N.m, the torque of the motor, before the gear"
+    assert current in found
 
 
 def test_a_torque_that_saturates_is_noted() -> None:
