@@ -71,7 +71,9 @@ def test_the_motor_and_the_noise_are_found(found: Found) -> None:
         assert found[f].tau_variance == pytest.approx(1e-5, rel=0.1)
         assert found[f].theta_variance == pytest.approx((2 * np.pi / 40000) ** 2 / 12, rel=0.1)
         assert found[f].m == 3  # r^2, (28)
-        assert 1e8 <= found[f].V_a <= 1e13
+        V_a = found[f].V_a
+        assert V_a is not None
+        assert 1e8 <= V_a <= 1e13
 
 
 @pytest.mark.slow("eight logs of 8 s, each simulated and identified")
