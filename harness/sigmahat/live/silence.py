@@ -88,7 +88,7 @@ class Silence:
         self._begin = now
         self._message: float | None = None  # time of the last message [s]
         self._stopped: float | None = None  # time of the last message before a silence [s]
-        self._newest = 0.0, now  # time of the last tick, as the sender counts it, and here [s]
+        self._newest = 0.0, now  # time of a tick with data, for the sender and here [s]
         self._check = now
 
     def message(self, columns: Columns, now: float) -> list[Event]:
@@ -137,12 +137,14 @@ class Silence:
                 told.append(each)
                 continue
             joint = self._joints[each.joint]
+            if each.outputs["valid"]:
+                self._newest = each.t, now
+                if self._stopped is not None:
+                    told.append(DataAgain(t=each.t, duration=now - self._stopped))
+                    self._stopped = None
             if each.outputs["valid"] or joint.last is None:
                 joint.heard = now
-            if each.outputs["valid"] and self._stopped is not None:
-                told.append(DataAgain(t=each.t, duration=now - self._stopped))
-                self._stopped = None
-            joint.last, self._newest = each, (each.t, now)
+            joint.last = each
             if joint.is_silent(now):
                 joint.said = now
                 each = each.without_data(each.t, now - joint.heard)
