@@ -41,14 +41,18 @@ class Client:
         subscription = {"id": 7, "channelId": self.channels[topic]["id"]}
         self.socket.send(json.dumps({"op": "subscribe", "subscriptions": [subscription]}))
 
-    def next(self) -> tuple[int, Any]:
+    def next_bytes(self) -> tuple[int, bytes]:
         """Time [ns] and contents of the next message."""
         while True:
             kind, data = self.socket.recv_data()
             if kind == ABNF.OPCODE_BINARY and data[0] == 1:
                 _, subscription, stamp = struct.unpack_from("<BIQ", data)
                 assert subscription == 7
-                return stamp, json.loads(data[13:])
+                return stamp, data[13:]
+
+    def next(self) -> tuple[int, Any]:
+        stamp, data = self.next_bytes()
+        return stamp, json.loads(data)
 
 
 def test_a_client_receives_channels_and_samples(tmp_path: Path) -> None:
@@ -74,3 +78,22 @@ def test_a_client_receives_channels_and_samples(tmp_path: Path) -> None:
     layout = json.loads((tmp_path / "out" / "foxglove-layout.json").read_text())
     assert [tab["title"] for tab in layout["content"]["tabs"]] == ["elbow", "wrist"]
     assert '"/elbow/estimate.sigma_low"' in json.dumps(layout)
+
+
+def test_events_are_messages_of_a_log(tmp_path: Path) -> None:
+    """Two fields are missing; the replay takes long enough for the client to be there."""
+    sent = messages(4000)
+    for each in sent[2000:]:
+        each["arm/motor"] = each["arm/torque"] = float("nan")
+    (tmp_path / "arm.csv").write_text("\n".join(csv(sent)) + "\n")
+    port = free_port()
+    options = ["--replay", "arm.csv", "--to", f"foxglove:{port}"]
+    with running(tmp_path, *options, text=of_joints(["elbow", "wrist"])) as process:
+        client = Client(port)
+        assert client.channels["/sigmahat/events"]["schemaName"] == "foxglove.Log"
+        client.subscribe("/sigmahat/events")
+        stamp, entry = client.next_bytes()
+        assert b"no 'arm/motor', 'arm/torque' for 0." in entry
+        assert 4.4e9 < stamp < 5.5e9
+        _, err = ended(process)
+    assert "no 'arm/motor', 'arm/torque' for 0." in err

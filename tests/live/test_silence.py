@@ -137,7 +137,7 @@ def test_a_field_that_disappears_is_named_once(how: str, stream: Callable[..., S
     robot.send(sent[:2300], 0.0)
     (event,) = robot.events
     assert event.in_words == "no 'arm/link[0]' for 0.5 s, while messages arrive"
-    assert event.t == pytest.approx(4.5, abs=0.3)
+    assert event.t == pytest.approx(4.5, abs=0.05)
     robot.send(sent[2300:3000], 4.6)
     assert robot.last().in_words == "no data for 2 s"
     robot.send(sent[3000:], 6.0)

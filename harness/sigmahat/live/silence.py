@@ -44,8 +44,10 @@ class _Field:
 
     def has_value(self, now: float) -> None:
         if self.seen is not None:
-            # A pause counts little: after it, the next one has to be noticed as soon as before.
-            step = min(now - self.seen, self.patience)
+            step = now - self.seen
+            if step > _SHORTEST:
+                # A pause counts little: the next one has to be noticed nearly as soon.
+                step = min(step, self.patience)
             self._interval = max(step, _FORGETS * self._interval)
         self.wait_again(now)
 
@@ -86,19 +88,21 @@ class Silence:
         self._begin = now
         self._message: float | None = None  # time of the last message [s]
         self._stopped: float | None = None  # time of the last message before a silence [s]
-        self._newest = 0.0, now  # time of the last tick, as the sender counts it, and here [s]
+        self._newest = 0.0, now  # time of a tick with data, for the sender and here [s]
         self._check = now
 
     def message(self, columns: Columns, now: float) -> list[Event]:
         """Looks at the fields of a message. Returns those that are missing or back, at once."""
         gap = 0.0 if self._message is None else now - self._message
-        was_silent = gap > self._patience
+        was_silent = gap > _SHORTEST and gap > self._patience
         self._message = now
-        missing, again = [], []
+        stopped: list[_Field] = []
+        never: list[_Field] = []
+        again: list[_Field] = []
         for name, field in self._fields.items():
             if math.isfinite(columns.get(name, math.nan)):
                 if field.is_missing:
-                    again.append(name)
+                    again.append(field)
                 field.is_missing = False
                 field.has_value(now)
                 continue
@@ -107,19 +111,21 @@ class Silence:
                 field.wait_again(now)
             if not field.is_missing and field.is_overdue(now):
                 field.is_missing = True
-                missing.append(field)
-        events: list[Event] = []
-        t = self.time(now)
-        for never in (True, False):
-            of_kind = [each for each in missing if (each.seen is None) is never]
-            if of_kind:
-                since = None if never else now - min(each.seen or now for each in of_kind)
-                count = min(each.absent for each in of_kind)
-                names = [each.name for each in of_kind]
-                events.append(FieldsMissing(t=t, fields=names, messages=count, duration=since))
+                (never if field.seen is None else stopped).append(field)
+        events: list[Event] = [self._missing(of, now) for of in (never, stopped) if of]
         if again:
-            events.append(FieldsAgain(t=t, fields=again))
+            events.append(FieldsAgain(t=self.time(now), fields=[each.name for each in again]))
         return events
+
+    def _missing(self, fields: Sequence[_Field], now: float) -> Event:
+        """fields  those that never came, or those that have stopped"""
+        seen = [each.seen for each in fields if each.seen is not None]
+        return FieldsMissing(
+            t=self.time(now),
+            fields=[each.name for each in fields],
+            messages=min(each.absent for each in fields),
+            duration=now - max(seen) if seen else None,
+        )
 
     def news(self, found: Sequence[News], now: float) -> list[News]:
         """Returns the news of a message, of which no tick of a silent joint is confident."""
@@ -131,12 +137,14 @@ class Silence:
                 told.append(each)
                 continue
             joint = self._joints[each.joint]
+            if each.outputs["valid"]:
+                self._newest = each.t, now
+                if self._stopped is not None:
+                    told.append(DataAgain(t=each.t, duration=now - self._stopped))
+                    self._stopped = None
             if each.outputs["valid"] or joint.last is None:
                 joint.heard = now
-            if each.outputs["valid"] and self._stopped is not None:
-                told.append(DataAgain(t=each.t, duration=now - self._stopped))
-                self._stopped = None
-            joint.last, self._newest = each, (each.t, now)
+            joint.last = each
             if joint.is_silent(now):
                 joint.said = now
                 each = each.without_data(each.t, now - joint.heard)

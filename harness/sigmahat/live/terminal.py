@@ -46,11 +46,13 @@ def terminal() -> Sink:
 
 
 def _row(last: Estimated) -> tuple[str, ...]:
+    """In a narrow terminal, the end of the line is cut off: the torque, which no estimate needs."""
     outputs = last.outputs
+    torque = f"{outputs['tau_e']:.3g} N.m at {outputs['phi']:.3g} rad"
     return (
         last.joint,
         f"{last.t:.1f} s",
         f"{outputs['sigma']:.4g} +- {NORMAL_95 * outputs['sigma_std']:.2g} N.m/rad",
-        f"{outputs['tau_e']:.3g} N.m at {outputs['phi']:.3g} rad",
         last.in_words,
+        "" if last.data_age else torque,
     )
