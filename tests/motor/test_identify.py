@@ -390,7 +390,7 @@ def test_the_prior_holds_what_encoders_read_at_different_times_show(path: Path) 
     write(found, path)
     prior = float(read_configuration(path).parameters["prior.D_theta"])
     assert prior > 1
-    for end in D_theta.interval:
+    for end in D_theta.fitted:
         assert abs(end - 1.2e-3) <= prior * 1.2e-3 * (1 + 1e-5)
 
 

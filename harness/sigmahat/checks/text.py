@@ -1,7 +1,7 @@
 """Converts the findings of a check to sentences for the user."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 from sigmahat.checks.findings import Checked, Finding, Kind, Severity
 from sigmahat.motor.hypotheses.hypothesis import Setting
@@ -32,8 +32,16 @@ def summary(checked: Checked) -> str:
     lines = [] if checked.is_wrong else [nothing_found(checked)]
     for severity, title in TITLES.items():
         if found := checked.of(severity):
-            lines += [title, *(f"  {sentence(each)}" for each in found)]
+            lines += [title, *(f"  {line}" for line in _lines(found))]
     return "\n".join(lines)
+
+
+def _lines(found: Sequence[Finding]) -> Iterator[str]:
+    """Makes one line of each finding, and one of what the configuration says of all ports."""
+    ports = [_port(each) for each in found if each.kind is Kind.PORT]
+    if ports:
+        yield f"ports: {'; '.join(ports)}"
+    yield from (sentence(each) for each in found if each.kind is not Kind.PORT)
 
 
 def nothing_found(checked: Checked) -> str:

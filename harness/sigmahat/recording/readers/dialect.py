@@ -5,6 +5,7 @@ before the names, a line of units or an empty line below them; rows end with a d
 have no name, or the same name twice. What is not ambiguous is read, and a note says what was done.
 """
 
+import csv
 import re
 from collections.abc import Sequence
 from contextlib import suppress
@@ -201,6 +202,9 @@ class _Table:
 
 def _split(line: str, delimiter: str) -> list[str]:
     cells = line.split() if delimiter == SPACES else line.split(delimiter)
+    if '"' in line and delimiter != SPACES:  # a delimiter within quotes belongs to the cell
+        with suppress(csv.Error):  # a cell that is longer than csv reads
+            cells = next(csv.reader([line], delimiter=delimiter, skipinitialspace=True))
     return [cell.strip().strip('"') for cell in cells]
 
 
