@@ -62,6 +62,18 @@ def test_a_file_is_not_overwritten(shell: Shell) -> None:
     shell.run("init log.csv --force")
 
 
+def test_the_configuration_is_beside_its_log(shell: Shell) -> None:
+    """GIVEN logs of the same name in two folders, THEN each has a configuration of its own."""
+    for folder in ("monday", "tuesday"):
+        Path(folder).mkdir()
+        write_log(LOG, Path(folder, "run.csv"))
+        said = shell.run(f"init {folder}/run.csv")
+        assert f"Check {folder}/run.toml" in said and "--config" not in said
+        assert read(f"{folder}/run.toml")["ports"].keys() == {"theta", "q", "tau"}
+        assert f"{folder}/run.toml: ports.theta.unit" in shell.refused(f"check {folder}/run.csv")
+    assert not Path("run.toml").exists()
+
+
 def test_names_of_several_lines_stay_comments(shell: Shell) -> None:
     name = "a\nmotor.B = 9 #.parquet"
     log = {

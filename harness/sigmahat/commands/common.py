@@ -60,7 +60,7 @@ def config_option(what: str) -> Callable[[_Command], _Command]:
     def path(context: click.Context, _: click.Parameter, given: Path | None) -> Path:
         return given or configuration_of(context.params["log"])
 
-    text = f"{what}  [default: LOG with the suffix .toml, in this folder]"
+    text = f"{what}  [default: LOG with the suffix .toml, beside it]"
     return click.option("--config", type=FILE, callback=path, help=text)
 
 
@@ -221,5 +221,5 @@ def errors_in_one_line(out: Path, option: str = "--out") -> Iterator[None]:
 
 
 def configuration_of(log: Path) -> Path:
-    """Default path of the configuration of a log: in this folder, with the suffix .toml."""
-    return Path(f"{log.stem}.toml")
+    """Default path of the configuration of a log: beside it, with the suffix .toml."""
+    return log.parent / f"{log.stem}.toml"
