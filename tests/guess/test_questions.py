@@ -10,10 +10,14 @@ from foreign_joint import GEAR, STIFFNESS, Motion, joint
 from recorded_logs import write_log
 from sigmahat.guess.columns import interval, read_columns
 from sigmahat.guess.guess import JointGuess, guess
-from sigmahat.recording.configuration import read_configuration
+from sigmahat.guess.template import write
+from sigmahat.recording.configuration import QUESTIONS, read_configuration
 from sigmahat.recording.log import LogInMemory
 from sigmahat.recording.readers.formats import open_log
 from sigmahat.result.estimate import estimate
+
+
+SIDE = ("gear_ratio", "tau")
 
 
 @pytest.fixture(scope="module")
@@ -53,6 +57,41 @@ def test_the_side_of_the_gear_is_asked(m: Motion, shell: Shell) -> None:
     assert result.sigma == pytest.approx(STIFFNESS, rel=0.04)
 
 
+NAMES = [
+    ("t", "motor_pos_rad", "link_pos_rad", "motor_torque_Nm"),
+    ("time_s", "theta_m [deg]", "theta_l [deg]", "tau_m [N.m]"),
+    ("Time (s)", "Motor Angle (rad)", "Joint Angle (rad)", "Joint Torque (Nm)"),
+    ("t_s", "q_motor_rad", "q_link_rad", "tau_motor_Nm"),
+    ("timestamp [s]", "Motorwinkel [Grad]", "Abtriebswinkel [Grad]", "Motormoment [Nm]"),
+    ("temps_s", "position_moteur_rad", "position_articulation_rad", "couple_moteur_Nm"),
+    ("tempo_s", "posizione_motore_rad", "posizione_giunto_rad", "coppia_motore_Nm"),
+    ("tiempo_s", "posicion_motor_grados", "posicion_eslabon_grados", "par_motor_Nm"),
+    ("t", "motorPosDeg", "linkPosDeg", "jointTorqueNm"),
+    ("t", "drive.angle_deg", "output.angle_deg", "drive.torque_mNm"),
+    ("t", "knee_motor_rad", "knee_link_rad", "knee_motor_current_A"),
+    ("t", "actuator_position_rad", "link_position_rad", "motor_current_mA"),
+    ("t", "x1_rad", "x2_rad", "motor_torque_Nm"),
+]
+
+
+@pytest.mark.parametrize("names", NAMES, ids=lambda names: names[1])
+def test_nothing_is_asked_but_the_data_sheet(names: tuple[str, ...], m: Motion) -> None:
+    """GIVEN units in all names and a torque whose side is said, THEN only gear and torque constant
+    are asked."""
+    time, motor, link, torque = names
+    angles = [
+        np.degrees(x) if "deg" in name.lower() or "gra" in name.lower() else x
+        for name, x in ((motor, m.theta), (link, m.q))
+    ]
+    log = LogInMemory(Path("log"), {time: m.t, motor: angles[0], link: angles[1], torque: m.tau})
+    columns = read_columns(log)
+    lines = write(log, columns, guess(columns)).splitlines()
+    asked = {line.split(" = ")[0] for line in lines if "FILL IN" in line and line[0] != "#"}
+    assert asked <= {"motor.gamma", "gear_ratio", "torque_constant"}
+    sides = [line for line in lines if "gear_ratio = 0" in line and QUESTIONS[SIDE] in line]
+    assert not sides
+
+
 @pytest.mark.parametrize("torque", ["motor_torque_Nm", "motor_current_A", "couple_moteur_Nm"])
 def test_nothing_is_asked_that_the_names_say(torque: str, m: Motion) -> None:
     found = only({"t": m.t, "motor_rad": m.theta, "link_deg": np.degrees(m.q), torque: m.tau})
@@ -64,8 +103,7 @@ def test_decimals_are_no_encoder(m: Motion) -> None:
     """GIVEN positions with five decimals, THEN one question asks for the unit of both."""
     log = {"t": m.t, "motor": np.round(m.theta, 5), "link": np.round(m.q, 5), "torque": m.tau}
     ports = only(log).ports
-    assert ports["theta"].is_asked and ports["q"].is_asked
-    assert ports["q"].notes["unit"] == "FILL IN: the same as ports.theta.unit"
+    assert ports["theta"].is_asked and ports["q"].unit == "as theta"
 
 
 def test_binary_steps_decide_also_when_the_text_is_rounded(m: Motion) -> None:

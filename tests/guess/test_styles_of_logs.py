@@ -145,7 +145,7 @@ class Style:
 
 
 CURRENT = {"ports.tau.torque_constant": TORQUE_CONSTANT}
-RADIANS = {"ports.theta.unit": "rad", "ports.q.unit": "rad"}  # one answer
+RADIANS = {"ports.theta.unit": "rad"}  # one answer for both positions
 STYLES = [
     Style(
         *("knee.csv", knee),
@@ -175,7 +175,7 @@ STYLES = [
     ),
     Style(
         *("log.parquet", nothing_but_numbers),
-        {"theta": ("data4", "FILL IN"), "q": ("data1", "FILL IN"), "tau": ("data2", "FILL IN")},
+        {"theta": ("data4", "FILL IN"), "q": ("data1", "as theta"), "tau": ("data2", "FILL IN")},
         {"motor.gamma": GEAR, "ports.tau.gear_ratio": 1, **RADIANS, "ports.tau.unit": "N.m"},
     ),
     Style(
@@ -189,14 +189,14 @@ STYLES = [
     ),
     Style(
         *("capture.mat", lambda m: {n.rpartition(".")[2]: x for n, x in firmware(m).items()}),
-        {"theta": ("posEstimate", "FILL IN"), "q": ("posAbs", "FILL IN")}
+        {"theta": ("posEstimate", "FILL IN"), "q": ("posAbs", "as theta")}
         | {"tau": ("IqMeasured", "A")},
         {**CURRENT, "ports.theta.gear_ratio": GEAR},
-        {"ports.theta.unit": "turn", "ports.q.unit": "turn"},
+        {"ports.theta.unit": "turn"},
     ),
     Style(
         *("run.h5", simulink),
-        {"theta": ("logsout.PhiMot.Data", "FILL IN"), "q": ("logsout.PhiLast.Data", "FILL IN")}
+        {"theta": ("logsout.PhiMot.Data", "FILL IN"), "q": ("logsout.PhiLast.Data", "as theta")}
         | {"tau": ("logsout.MMot.Data", "FILL IN")},
         {"ports.theta.gear_ratio": GEAR, **RADIANS, "ports.tau.unit": "N.m"},
     ),

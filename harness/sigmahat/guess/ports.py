@@ -15,7 +15,7 @@ from sigmahat.motor.hypotheses.drive import drive
 from sigmahat.motor.hypotheses.hypothesis import unit_of_same_turn
 from sigmahat.motor.hypotheses.slope import Slope, gear_between, slope_of
 from sigmahat.recording.column import counts_of_steps, is_decimal, unit_of_steps
-from sigmahat.recording.configuration import FILL_IN, QUESTIONS
+from sigmahat.recording.configuration import AS, FILL_IN, QUESTIONS
 from sigmahat.recording.log import Array
 from sigmahat.recording.units import TURN
 
@@ -40,7 +40,8 @@ class PortGuess:
     low: float
     high: float  # range of its values
     unit: str | None
-    """None if the user has to fill in `scale`, and FILL_IN if the user has to fill in the unit."""
+    """None if the user has to fill in `scale`, FILL_IN if the user has to fill in the unit, and
+    "as theta" or "as q" if the user fills in the unit of that port."""
     wrap: float | None
     """Period of a counter that starts again, in the unit of the column; None without a period."""
     time: str | None  # the time column of the port, if it differs from the time column of the joint
@@ -186,13 +187,19 @@ def _set_together(theta: PortGuess, q: PortGuess, motor: Column, link: Column, T
 
 
 def _set_units(theta: PortGuess, other: PortGuess, slope: Slope) -> None:
-    """Guesses a unit from that of the other position; both asked for are one question."""
+    """Guesses a unit from that of the other position; one answer serves two unknown units."""
     if theta.is_asked and other.is_asked:
-        other.notes["unit"] = f"{FILL_IN}: the same as ports.theta.unit"
+        _take_unit_of("theta", other)
     elif theta.is_asked:
         _set_unit_by_other(theta, other, 1 / abs(slope.value))
     elif other.is_asked:
         _set_unit_by_other(other, theta, abs(slope.value))
+
+
+def _take_unit_of(name: str, port: PortGuess) -> None:
+    """Gives a position the unit that the user fills in for another port."""
+    port.unit = AS[name]
+    port.notes["unit"] = "CHECK: both look alike; name its own unit if it differs"
 
 
 def _set_unit_by_other(port: PortGuess, other: PortGuess, ratio: float) -> None:
@@ -221,7 +228,7 @@ def _set_unit_by_other(port: PortGuess, other: PortGuess, ratio: float) -> None:
 def _turns(theta: PortGuess, other: PortGuess) -> tuple[float, float] | None:
     """Returns one turn in the unit of each position; both are 1 if one answer of the user is the
     unit of both; None if they are not known."""
-    if theta.is_asked and other.is_asked:
+    if other.unit == AS["theta"]:
         return 1.0, 1.0
     if theta.unit not in TURN or other.unit not in TURN:
         return None
@@ -233,7 +240,7 @@ def _set_by_motor(theta: PortGuess, phi: PortGuess, motor: Column, spring: Colum
     share = share_of_motor(motor.window, spring.window)
     if share is None:
         if theta.is_asked and phi.is_asked:
-            phi.notes["unit"] = f"{FILL_IN}: the same as ports.theta.unit"
+            _take_unit_of("theta", phi)
         phi.notes["sign"] = "CHECK: the log does not show it; 1 for q - theta, -1 for theta - q"
         theta.gear_ratio = None
         theta.notes["gear_ratio"] = _asked("gear_ratio", "theta", "the log does not show it")
@@ -249,7 +256,7 @@ def _set_by_motor(theta: PortGuess, phi: PortGuess, motor: Column, spring: Colum
 def _set_by_link(q: PortGuess, phi: PortGuess, roles: Roles) -> None:
     """Guesses units and sign of a deformation beside the position of the link."""
     if q.is_asked and phi.is_asked:
-        phi.notes["unit"] = f"{FILL_IN}: the same as ports.q.unit"
+        _take_unit_of("q", phi)
     phi.notes["sign"] = "CHECK: 1 for q - theta, -1 for theta - q"
     if "tau" in roles.ports:
         link, spring, tau = (roles.ports[port].column.window for port in ("q", "phi", "tau"))

@@ -19,6 +19,7 @@ from sigmahat.recording.configuration import (
     NOT_YOURS,
     WIDE_PRIOR,
     Port,
+    with_units,
 )
 from sigmahat.recording.units import scale
 
@@ -97,7 +98,7 @@ def update(document: tomlkit.TOMLDocument, identified: Identified, joint: str = 
         written.append("ports.tau.torque_constant")
     name = "phi" if "phi" in whole["ports"] else "q"
     if identified.zero and name in whole["ports"]:
-        port = Port(**whole["ports"][name].unwrap())
+        port = Port(**with_units(whole["ports"].unwrap())[name])
         zero = tomlkit.item(float(f"{port.zero + identified.zero / scale(name, port):.9g}"))
         several_joints.set_item(section, ("ports", name, "zero"), zero)
         written.append(f"ports.{name}.zero")

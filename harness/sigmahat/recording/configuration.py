@@ -39,6 +39,8 @@ QUESTIONS = {
 }
 """The choices for values that neither the names nor the samples of a log may show, by key of a port
 and port. `init` asks for them, and every command refuses a file with an open one."""
+AS = {port: f"as {port}" for port in ("theta", "q")}
+"""Units of a position that is in the unit of another port: one answer of the user for both."""
 _OF_THE_DATA_SHEET = "the value from the data sheet of your device"
 NOT_YOURS = "not known: of another robot, until identify finds it or you set it"
 """Comment of a motor parameter that the user has not set."""
@@ -183,6 +185,7 @@ def checked_configuration(
             what = one if known == [""] else unknown("joint", joint, known)
         raise LogError(f"{path}: {what}")
     values = several_joints.of_joint(document, joint).unwrap()
+    values["ports"] = with_units(values.get("ports", {}))
     _refuse_open(values, path)
     try:
         file = TypeAdapter(_ConfigurationFile).validate_python(values)
@@ -208,6 +211,22 @@ def checked_configuration(
         )
     parameters = dict(toml_file.dotted(file.parameters))
     return Configuration(path, file.time, file.ports, parameters, joint)
+
+
+def with_units(ports: Any) -> Any:
+    """Returns the section [ports] with the unit, or the scale, of the port that `as` names.
+
+    A section without the named port is unchanged; its unit is refused when it is used.
+    """
+    if not isinstance(ports, dict) or not all(isinstance(each, dict) for each in ports.values()):
+        return ports  # a wrong file, to be explained by its reader
+    whole = dict(ports)
+    for name, port in ports.items():
+        other = next((each for each, unit in AS.items() if unit == port.get("unit")), None)
+        if other in ports and other != name:
+            shared = {key: ports[other][key] for key in ("unit", "scale") if key in ports[other]}
+            whole[name] = {key: port[key] for key in port if key != "unit"} | shared
+    return whole
 
 
 def _refuse_open(values: Mapping[str, Any], path: Path) -> None:
