@@ -22,11 +22,18 @@ from checked_logs import (
 from command_line import Shell
 from recorded_logs import CONFIGURATION, awas_log, configured, in_memory, write_log
 from sigmahat.checks.check import check
+from sigmahat.checks.contradictions import of_sizes
 from sigmahat.checks.findings import Checked, Finding, Kind, Severity
 from sigmahat.checks.text import sentence
+from sigmahat.motor.hypotheses.positions import compare_positions
+from sigmahat.motor.log_view import liveliest_part
 from sigmahat.recording.log import LogInMemory
 from sigmahat.result.curve import stiffness_in_the_middle
 from sigmahat.result.estimate import estimate
+
+
+ANY_MOTOR = (f"motor.gamma = {GEAR}", "samplePeriod = 0.001")
+"""Parameters of a joint whose motor is not known."""
 
 
 def checked(columns: Mapping[str, Array], text: str) -> Checked:
@@ -303,3 +310,41 @@ def test_the_command(shell: Shell) -> None:
     said = shell.run("identify knee.csv --config wrong.toml --dry-run")
     assert "ports.theta.counts_per_turn" in said
     assert shell.json("estimate knee.csv")["checks"]["wrong"] is False
+
+
+@pytest.mark.parametrize(
+    ("port", "factor", "size", "severity"),
+    [
+        ("tau", 200.0, "torque after the gear", Severity.NOTE),
+        ("tau", 5e4, "torque after the gear", Severity.WRONG),
+        ("q", 1.0, "deformation", Severity.NOTE),
+    ],
+)
+def test_a_size_of_no_usual_joint_is_said(
+    port: str, factor: float, size: str, severity: Severity
+) -> None:
+    log = joint_log(KNEE, 1e-3)
+    wrong = {**log, port: factor * log[port] + (2.0 if port == "q" else 0.0)}
+    view = liveliest_part(LogInMemory(Path("log"), wrong), in_memory(configured(*ANY_MOTOR)))
+    found = [each for each in of_sizes(compare_positions(view)) if each.about == size]
+    assert [each.severity for each in found] == [severity]
+
+
+def test_the_inertia_at_the_link_is_a_size() -> None:
+    """GIVEN a torque 80 times too large, THEN it is below that of a large robot, and the inertia of
+    the motor is not."""
+    log = joint_log(KNEE, 1e-3)
+    view = liveliest_part(
+        LogInMemory(Path("log"), {**log, "tau": 80 * log["tau"]}), in_memory(configured(*ANY_MOTOR))
+    )
+    (found,) = of_sizes(compare_positions(view))
+    assert found.about == "inertia of the motor at the link"
+    assert found.measured == pytest.approx(80 * KNEE["motor.B"] * GEAR**2, rel=0.05)
+
+
+def test_the_largest_torque_is_said_for_comparison() -> None:
+    log = joint_log(KNEE, 1e-3)
+    found = checked(log, configured(*ANY_MOTOR)).of(Severity.RESTS_ON)
+    (largest,) = (each for each in found if each.kind is Kind.LARGEST_TORQUE)
+    assert largest.measured == pytest.approx(GEAR * np.max(np.abs(log["tau"])))
+    assert "compare with the data sheet of the joint" in sentence(largest)

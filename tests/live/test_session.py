@@ -117,6 +117,21 @@ def test_without_stamps_the_time_of_arrival_counts(tmp_path: Path) -> None:
     same(ticks, estimated(session.recordings[0]))
 
 
+@pytest.mark.parametrize("replaced", ["theta", "q"])
+def test_a_deformation_takes_the_place_of_a_position(replaced: str, tmp_path: Path) -> None:
+    sent = messages(600)
+    t = T * np.arange(len(sent))
+    phi = 0.03 * np.sin(5 * t) + 0.02 * np.sin(13 * t)
+    for each, deformation in zip(sent, np.degrees(phi).tolist(), strict=True):
+        each["arm/spring"] = deformation
+    start = CONFIGURATION.index(f"[ports.{replaced}]")
+    section = CONFIGURATION[start : CONFIGURATION.index("[ports", start + 1)]
+    text = CONFIGURATION.replace(section, '[ports.phi]\ncolumn = "arm/spring"\nunit = "deg"\n')
+    session, ticks = live(tmp_path, sent, text)
+    np.testing.assert_allclose([each.outputs["phi"] for each in ticks], phi, atol=1e-12)
+    same(ticks, estimated(session.recordings[0]))
+
+
 def two_topics() -> Iterator[dict[str, float]]:
     """The link comes in messages of its own, half as often, and a little later."""
     for i, each in enumerate(messages(1000)):

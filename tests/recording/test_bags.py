@@ -32,8 +32,11 @@ def signals() -> dict[str, np.ndarray]:
     return {"theta": theta, "q": theta + 2e-3 * np.sin(7 * t), "tau": 0.2 * np.cos(5 * t)}
 
 
-def write_bag(storage: StoragePlugin) -> None:
-    """Writes a bag with a sensor_msgs/JointState every ms and the torque as std_msgs/Float64."""
+def write_bag(storage: StoragePlugin, one_joint_each: bool = False) -> None:
+    """Writes a bag with a sensor_msgs/JointState every ms and the torque as std_msgs/Float64.
+
+    one_joint_each  the link comes in a message of its own, half a millisecond after the motor
+    """
     store = get_typestore(Stores.ROS2_HUMBLE)
     joint, number = "sensor_msgs/msg/JointState", "std_msgs/msg/Float64"
     Time, Header, JointState, Float64 = (
@@ -46,9 +49,14 @@ def write_bag(storage: StoragePlugin) -> None:
         torque = writer.add_connection("/drive/torque", number, typestore=store)
         for k, (theta, q, tau) in enumerate(zip(*signals().values(), strict=True)):
             now = START + k * 1_000_000
-            header = Header(Time(now // 10**9, now % 10**9), "base")
-            message = JointState(header, ["motor", "link"], np.array([theta, q]), none, none)
-            writer.write(states, now + 300, store.serialize_cdr(message, joint))
+            parts = [(now, {"motor": theta, "link": q})]
+            if one_joint_each:
+                parts = [(now, {"motor": theta}), (now + 500_000, {"link": q})]
+            for at, positions in parts:
+                header = Header(Time(at // 10**9, at % 10**9), "base")
+                angles = np.array([*positions.values()])
+                message = JointState(header, [*positions], angles, none, none)
+                writer.write(states, at + 300, store.serialize_cdr(message, joint))
             writer.write(torque, now, store.serialize_cdr(Float64(float(tau)), number))
     Path("bag.toml").write_text(CONFIGURATION)
 
@@ -63,6 +71,20 @@ def test_bag(storage: StoragePlugin, shell: Shell) -> None:
     shell.run("estimate bag")
     phi = read_estimate(Path("sigmahat-results/bag"))["estimate.phi [rad]"].to_numpy()
     np.testing.assert_allclose(phi, values["q"] - values["theta"], rtol=STORED, atol=0)
+
+
+def test_messages_with_one_joint_each(shell: Shell) -> None:
+    """GIVEN motor and link in messages of their own, THEN each has its own samples and times."""
+    write_bag(StoragePlugin.MCAP, one_joint_each=True)
+    log, values = open_log(Path("bag")), signals()
+    for port, name in (("theta", "motor"), ("q", "link")):
+        column = log.read(f"/joint_states.position[{name}]")
+        assert np.array_equal(column[~np.isnan(column)], values[port])
+    shell.run("estimate bag")
+    phi = read_estimate(Path("sigmahat-results/bag"))["estimate.phi [rad]"].to_numpy()
+    t = T * np.arange(N)
+    q = np.interp(t, t + 5e-4, values["q"])  # every second row is of the motor
+    np.testing.assert_allclose(phi[::2][2:-2], (q - values["theta"])[2:-2], atol=2e-5)
 
 
 def test_one_mcap_file_whole_and_cut_in_the_middle(shell: Shell) -> None:

@@ -2,7 +2,10 @@
 
 from collections.abc import Iterator, Mapping
 
+import numpy as np
+
 from sigmahat.checks.findings import Finding, Kind, Severity
+from sigmahat.motor.log_view import LogView
 from sigmahat.recording.configuration import PORTS, Port
 from sigmahat.recording.units import factor
 
@@ -24,3 +27,20 @@ def of_ports(ports: Mapping[str, Port]) -> Iterator[Finding]:
         ratio = abs(port.gear_ratio)
         where = f"ports.{name}.{key}"
         yield Finding(Kind.PORT, Severity.RESTS_ON, where, ratio, unit, value, about=name)
+
+
+def of_size(view: LogView) -> Iterator[Finding]:
+    """Yields the largest torque at the link and the largest deformation, for the user to compare.
+
+    A torque in a wrong unit or on the wrong side of the gear multiplies inertia, friction and
+    stiffness alike, so a motion agrees with any of them. Only the size of the joint tells.
+    """
+    if not view.pieces:
+        return
+    name = "tau_e_sensor" if view.has_sensor else "tau"
+    torque = abs(view.gamma) * max(float(np.max(np.abs(piece.tau))) for piece in view.pieces)
+    deformation = max(float(np.max(np.abs(piece.phi))) for piece in view.pieces)
+    key = f"ports.{name}.{'unit' if view.has_sensor else 'gear_ratio'}"
+    yield Finding(
+        Kind.LARGEST_TORQUE, Severity.RESTS_ON, key, torque, "N.m", deformation, about=name
+    )

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from sigmahat.checks.assumptions import of_ports
+from sigmahat.checks.assumptions import of_ports, of_size
 from sigmahat.checks.contradictions import of_gears, of_positions, of_sizes, of_swap, of_torque
 from sigmahat.checks.findings import Checked, Finding, Kind, Severity
 from sigmahat.checks.samples import at_rest, of_columns
@@ -153,6 +153,7 @@ def _rests_on(view: LogView, start: Mapping[str, Value], per_gain: float) -> Ite
     gain = float(parameters["prior.torque_gain"])
     yield Finding(Kind.TORQUE_GAIN, Severity.RESTS_ON, key, per_gain, "", gain)
     yield from of_ports(given)
+    yield from of_size(view)
     for name in ("B", "D_theta"):
         is_other = parameters[f"motor.{name}"] == start[f"motor.{name}"]
         if (

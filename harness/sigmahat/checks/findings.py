@@ -45,6 +45,7 @@ class Kind(str, Enum):
     TORQUE_SCALE = "scale of the torque"
     OTHER_ROBOT = "motor data of another robot"
     PORT = "unit and side of the gear of a port"
+    LARGEST_TORQUE = "largest torque at the link"
     SIZE = "size of the joint"
     STEP = "step of the encoder"
     JUMP = "jumps of the encoder"

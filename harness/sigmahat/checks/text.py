@@ -153,6 +153,8 @@ _SENTENCES: Mapping[Kind, str] = {
     Kind.INERTIA: _INERTIA,
     Kind.TORQUE_SCALE: f"{_INERTIA}, as if the torque were geared twice or not at all",
     Kind.OTHER_ROBOT: "{value:.4g} is the start value, of another robot",
+    Kind.LARGEST_TORQUE: "unit and side make the largest torque at the link {measured}, at a "
+    "deformation of up to {given:.3g} rad: compare with the data sheet of the joint",
     Kind.SIZE: "the {about} is {measured}, of usual joints at most {expected}",
     Kind.STEP: "the values of {about} change in steps of {measured}, the configured encoder has "
     "{expected}",
