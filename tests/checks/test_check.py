@@ -31,7 +31,6 @@ from sigmahat.recording.log import LogInMemory
 from sigmahat.result.curve import stiffness_in_the_middle
 from sigmahat.result.estimate import estimate
 
-
 ANY_MOTOR = (f"motor.gamma = {GEAR}", "samplePeriod = 0.001")
 """Parameters of a joint whose motor is not known."""
 

@@ -16,7 +16,6 @@ from sigmahat.recording.log import LogInMemory
 from sigmahat.recording.readers.formats import open_log
 from sigmahat.result.estimate import estimate
 
-
 SIDE = ("gear_ratio", "tau")
 
 

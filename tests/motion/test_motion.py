@@ -1,6 +1,6 @@
 """The motion that `sigmahat motion` proposes: its limits, files, C code and expected accuracy."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from io import StringIO
 from pathlib import Path
@@ -15,7 +15,7 @@ from controllers import run
 from recorded_logs import configured, in_memory
 from sigmahat.cli import main
 from sigmahat.motion import known
-from sigmahat.motion.design import Sensors, _log, design, relative_half_width
+from sigmahat.motion.design import Sensors, _log, compared_half_width, design, relative_half_width
 from sigmahat.motion.joints_of_log import Joint, Limits, Multisine, Ranges, of_limits
 from sigmahat.motor.identify import identify
 from sigmahat.motor.write import update
@@ -85,7 +85,7 @@ def rows(written: Path) -> np.ndarray:
     return np.loadtxt(written / "motion.csv", delimiter=",", skiprows=1)
 
 
-@pytest.mark.slow("three logs are identified and estimated, to choose the motion")
+@pytest.mark.slow("a log is identified and estimated, to predict the result")
 def test_the_csv_begins_and_ends_at_rest_and_keeps_the_limits(rows: np.ndarray) -> None:
     t, position, velocity, acceleration = rows.T
     np.testing.assert_allclose(np.diff(t), 1e-3)
@@ -139,8 +139,11 @@ def test_what_a_log_says_contains_the_joint() -> None:
     assert found.low.angle == pytest.approx(JOINT.angle, abs=0.1)
 
 
-def test_a_motion_that_is_larger_promises_more() -> None:
-    small, large = (relative_half_width(JOINT, MOTION.scaled(f), SENSORS) for f in (0.2, 1.0))
+@pytest.mark.parametrize("half_width", [relative_half_width, compared_half_width])
+def test_a_motion_that_is_larger_promises_more(
+    half_width: Callable[[Joint, Multisine, Sensors], float],
+) -> None:
+    small, large = (half_width(JOINT, MOTION.scaled(f), SENSORS) for f in (0.2, 1.0))
     assert 1.96 * SENSORS.torque_gain * 0.99 < large < small  # no motion reveals the gain
 
 

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 import tomlkit
 
@@ -105,6 +106,20 @@ def test_an_open_question_is_a_choice_to_be_made(tmp_path: Path) -> None:
     assert ("FILL IN", "choose") not in unit.widget.options
     setup.set("ports.tau.gear_ratio", 1.0)
     assert not {"ports.tau.unit", "ports.tau.gear_ratio"} & set(setup.open_keys)
+
+
+def test_a_deformation_is_a_port_of_the_page(tmp_path: Path) -> None:
+    log = knee_log()
+    theta = 2 * np.pi * (log["motor_counts"] - 1500) / (4096 * 100)
+    phi = np.radians(log["link_deg"]) - theta
+    columns = {"t": log["t"], "motor_pos_rad": theta, "spring_deflection_rad": phi}
+    setup = setup_of({**columns, "motor_torque_Nm": 0.05 * log["current"]}, tmp_path)
+    assert setup.get("ports.phi.column") == "spring_deflection_rad"
+    assert (setup.get("ports.phi.sign"), setup.get("ports.q.column")) == (1, None)
+    setup.set("ports.phi.unit", "counts")
+    assert "ports.phi.counts_per_turn" in setup.open_keys
+    setup.set("ports.phi.column", None)
+    assert setup.get("ports.phi.column") is None
 
 
 def test_another_column_is_guessed_anew(tmp_path: Path) -> None:
