@@ -153,3 +153,12 @@ def log_under_gravity(change: float) -> Mapping[str, Array]:
     tau = _motor_torque(velocity, acceleration) + load / GEAR
     noise = 1e-3 * np.random.default_rng(1).standard_normal(len(t))
     return as_recorded({"t": t, "theta": theta, "q": theta - load / K, "tau": tau + noise})
+
+
+def stiff_log() -> dict[str, Array]:
+    """The knee with a spring that is rigid, in slow motion without any load, in closed form."""
+    t, theta, velocity, acceleration = _sines(0.3)
+    noise = np.random.default_rng(1).standard_normal((2, len(t)))
+    q = theta + 3e-5 * noise[0]
+    tau = _motor_torque(velocity, acceleration) + 1e-4 * noise[1]
+    return {"t": t, "theta": theta, "q": q, "tau": tau}

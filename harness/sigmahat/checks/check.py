@@ -8,7 +8,14 @@ from typing import Any
 import numpy as np
 
 from sigmahat.checks.assumptions import of_ports, of_size
-from sigmahat.checks.contradictions import of_gears, of_positions, of_sizes, of_swap, of_torque
+from sigmahat.checks.contradictions import (
+    of_gears,
+    of_misfit,
+    of_positions,
+    of_sizes,
+    of_swap,
+    of_torque,
+)
 from sigmahat.checks.findings import Checked, Finding, Kind, Severity
 from sigmahat.checks.samples import at_rest, of_columns
 from sigmahat.checks.text import DOUBTS
@@ -51,7 +58,8 @@ def check(log: Log, configuration: Configuration) -> Checked:
     (outputs,) = play(estimator_for(configuration), view.samples, len(view.samples.values))
     if not any(each.severity is Severity.WRONG for each in findings):
         # After a wrong value, the findings of the replay are only consequences of this value.
-        replayed = _replayed(view, outputs)
+        has_misfit = any(each.kind is Kind.UNEXPLAINED for each in findings)
+        replayed = _replayed(view, outputs, has_misfit)
         if any(each.kind is Kind.NO_TORQUE for each in findings):
             # Without a torque, a negative stiffness does not indicate a wrong sign.
             replayed = (each for each in replayed if each.about != "NegativeStiffness")
@@ -125,7 +133,10 @@ def _contradictions(view: LogView) -> Sequence[Finding]:
 def _of_motion(view: LogView, recorded: Sequence[Finding]) -> Iterator[Finding]:
     """Yields contradictions by the motion, and findings of the columns with other causes."""
     compared = compare_positions(view)
-    found = list(of_positions(compared))
+    of_model = list(of_misfit(compared))
+    yield from of_model
+    has_misfit = bool(of_model)
+    found = list(of_positions(compared, has_misfit))
     yield from found
     keys = {each.key for each in found}
     if "ports.theta.gear_ratio" in keys:
@@ -136,7 +147,7 @@ def _of_motion(view: LogView, recorded: Sequence[Finding]) -> Iterator[Finding]:
     if "ports.q.gear_ratio" not in keys:
         yield from of_gears(view)
     yield from of_sizes(compared)
-    yield from of_torque(compared)
+    yield from of_torque(compared, has_misfit)
 
 
 def _rests_on(view: LogView, start: Mapping[str, Value], per_gain: float) -> Iterator[Finding]:
@@ -172,8 +183,11 @@ def _rests_on(view: LogView, start: Mapping[str, Value], per_gain: float) -> Ite
         yield Finding(Kind.ABSENT, Severity.RESTS_ON, f"prior.{name}", 0.0, "", about=name)
 
 
-def _replayed(view: LogView, outputs: Outputs) -> Iterator[Finding]:
-    """Yields findings from the outputs of the estimator when the log is replayed."""
+def _replayed(view: LogView, outputs: Outputs, has_misfit: bool) -> Iterator[Finding]:
+    """Yields findings from the outputs of the estimator when the log is replayed.
+
+    has_misfit  whether another finding says that the model does not fit
+    """
     yield from _range(view, outputs)
     yield from _noise(view)
     valid = outputs["valid"]
@@ -181,7 +195,9 @@ def _replayed(view: LogView, outputs: Outputs) -> Iterator[Finding]:
     if learned < _LEARNED:
         yield Finding(Kind.LEARNED, Severity.NOTE, "time.longest_gap", learned, "", 1.0)
     if view.parameters["method"] == "FilteredRegression":
-        yield from _claims(outputs)
+        # The misfit is relative to the noise, which `identify` finds.
+        is_noise_known = _noise_key(view) in view.configuration.parameters
+        yield from _claims(outputs, is_noise_known and not has_misfit)
 
 
 def _range(view: LogView, outputs: Outputs) -> Iterator[Finding]:
@@ -201,9 +217,13 @@ def _range(view: LogView, outputs: Outputs) -> Iterator[Finding]:
         yield Finding(Kind.RANGE, Severity.WRONG, key, torque, "N.m", given, proposed)
 
 
+def _noise_key(view: LogView) -> str:
+    return "noise.tau_e" if view.has_sensor else "noise.tau"
+
+
 def _noise(view: LogView) -> Iterator[Finding]:
     """Compares the noise of the torque with the configured noise."""
-    key = "noise.tau_e" if view.has_sensor else "noise.tau"
+    key = _noise_key(view)
     if not view.pieces or (view.parameters["modality"] == "Model"):
         return
     times = abs(view.gamma) if view.has_sensor else 1.0
@@ -214,13 +234,17 @@ def _noise(view: LogView) -> Iterator[Finding]:
         yield Finding(Kind.NOISE, Severity.NOTE, key, noise, "N.m", given, proposed)
 
 
-def _claims(outputs: Outputs) -> Iterator[Finding]:
-    """Yields a large misfit of the model, and doubts that the estimator reports often."""
+def _claims(outputs: Outputs, with_misfit: bool) -> Iterator[Finding]:
+    """Yields a large misfit of the model, and doubts that the estimator reports often.
+
+    with_misfit  whether the misfit of the estimator says something that is not known yet
+    """
     misfit = float(outputs["misfit"][-1])
-    if misfit > _MISFIT:
+    is_misfit = misfit > _MISFIT
+    if is_misfit and with_misfit:
         yield Finding(Kind.MISFIT, Severity.NOTE, "rls.n", misfit, "", 1.0)
     doubts = outputs["doubt"][len(outputs["doubt"]) // 2 :]
     for item, (key, _) in DOUBTS.items():
         share = float(np.mean(doubts == item))
-        if share > _DOUBTED and not (item == "Misfit" and misfit > _MISFIT):
+        if share > _DOUBTED and not (item == "Misfit" and is_misfit):
             yield Finding(Kind.DOUBT, Severity.NOTE, key, share, "", 0.0, about=item)

@@ -6,18 +6,31 @@ the configuration and by what identify will set.
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
 
 from sigmahat.checks.findings import Finding, Kind, Severity
 from sigmahat.motor.hypotheses.hypothesis import Evidence, distance
+from sigmahat.motor.hypotheses.misfit import misfit
 from sigmahat.motor.hypotheses.positions import Positions, swapped
 from sigmahat.motor.hypotheses.size import implausible_sizes
-from sigmahat.motor.hypotheses.torque import Delay, Inertia, Zero, compare_torque, is_friction_known
+from sigmahat.motor.hypotheses.torque import (
+    Delay,
+    Inertia,
+    Sign,
+    TorqueEvidence,
+    Zero,
+    compare_torque,
+    is_friction_known,
+)
 from sigmahat.motor.log_view import LogView
 
 _STD = 3.0  # a prior contradicts the log beyond this number of standard deviations
 _AWAS = 2.3e-5  # start value of motor.B [kg.m2]
 _LARGE = math.log(5.0)
 """Logarithm of the largest factor by which unmodelled friction and delays can change B."""
+_LARGER = math.log(30.0)  # the same if the motor equation does not explain the torque
 _SAME = 0.01  # two gear ratios count as equal up to this relative difference
 
 
@@ -42,9 +55,22 @@ def of_swap(view: LogView) -> Iterator[Finding]:
         yield finding(Kind.SLOPE, Severity.WRONG, evidence, "", 1.0, "swap")
 
 
-def of_positions(positions: Positions) -> Iterator[Finding]:
+def of_misfit(positions: Positions) -> Iterator[Finding]:
+    """Finds a torque that the motion does not explain, whatever is wrong in the configuration."""
+    evidence = None if positions.fit is None else misfit(positions.view, positions.fit)
+    if evidence is not None:
+        yield finding(Kind.UNEXPLAINED, Severity.NOTE, evidence, "", 0.0)
+
+
+def of_positions(positions: Positions, has_misfit: bool) -> Iterator[Finding]:
+    """Finds scales and signs of the positions.
+
+    has_misfit  whether the motor equation does not explain the torque: then the torque is no
+                evidence of a wrong scale
+    """
     if positions.scale is not None:
-        severity = Severity.NOTE if positions.may_be_held else Severity.WRONG
+        is_doubtful = positions.may_be_held or (has_misfit and positions.by_torque)
+        severity = Severity.NOTE if is_doubtful else Severity.WRONG
         about = "held" if abs(positions.scale.measured) > 1 else ""
         yield finding(Kind.SLOPE, severity, positions.scale, "", 1.0, about)
     if positions.sign is not None:
@@ -73,14 +99,28 @@ def of_sizes(positions: Positions) -> Iterator[Finding]:
         yield finding(Kind.SIZE, severity, size, size.unit, size.usual, size.size.value)
 
 
-def of_torque(positions: Positions) -> Iterator[Finding]:
-    view = positions.view
+def of_torque(positions: Positions, has_misfit: bool) -> Iterator[Finding]:
+    """Finds what the torque contradicts.
+
+    has_misfit  whether the motor equation does not explain the torque: then only errors that no
+                misfit causes are more than notes
+    """
     evidence = compare_torque(positions)
+    certain = []
+    if evidence.sign is not None and evidence.sign.power > 0:
+        certain.append(Kind.SIGN)
+    if evidence.inertia is not None and _is_far(evidence.inertia, _LARGER):
+        certain += [Kind.INERTIA, Kind.TORQUE_SCALE]
+    for each in _of_torque(positions.view, evidence):
+        is_doubtful = has_misfit and each.kind not in certain
+        yield replace(each, severity=Severity.NOTE) if is_doubtful else each
+
+
+def _of_torque(view: LogView, evidence: TorqueEvidence) -> Iterator[Finding]:
     if evidence.gear is not None:
         yield finding(Kind.SLOPE, Severity.WRONG, evidence.gear, "", 1.0)
     if evidence.sign is not None:
-        port = "tau_e_sensor" if view.has_sensor else "tau"
-        yield finding(Kind.SIGN, Severity.WRONG, evidence.sign, "N.m/rad", about=port)
+        yield _of_sign(view, evidence.sign)
     if evidence.deformation is not None:
         kind = Kind.STIFFNESS_SIGN
         yield finding(kind, Severity.WRONG, evidence.deformation, "N.m/rad")
@@ -98,15 +138,30 @@ def of_torque(positions: Positions) -> Iterator[Finding]:
         yield _of_inertia(evidence.inertia)
 
 
+def _of_sign(view: LogView, sign: Sign) -> Finding:
+    port = "tau_e_sensor" if view.has_sensor else "tau"
+    if sign.by_power:
+        found = finding(Kind.SIGN, Severity.WRONG, sign, "W", about="power")
+        return replace(found, measured=sign.power)
+    return finding(Kind.SIGN, Severity.WRONG, sign, "N.m/rad", about=port)
+
+
 def _of_zero(view: LogView, zero: Zero) -> Iterator[Finding]:
     """Yields a wrong zero, but only a note within the deformations of the log: identify sets it."""
     bias = 0.0  # largest bias of the torque that the estimator expects [N.m]
     if view.parameters["method"] == "FilteredRegression":
-        bias = _STD * float(view.parameters["prior.bias"]) * float(view.parameters["prior.tau_e"])
+        bias = _STD * float(view.parameters["prior.bias"]) * _size_of_torque(view)
     if abs(zero.measured) > zero.covered / 2 and zero.torque > bias:
         yield finding(Kind.ZERO, Severity.WRONG, zero, "rad", 0.0)
     elif zero.is_symmetric:
         yield finding(Kind.ZERO, Severity.NOTE, zero, "rad", 0.0)
+
+
+def _size_of_torque(view: LogView) -> float:
+    """Returns prior.tau_e, or before `identify` has set it the largest torque [N.m]."""
+    if "prior.tau_e" in view.configuration.parameters:
+        return float(view.parameters["prior.tau_e"])
+    return abs(view.gamma) * max(float(np.max(np.abs(piece.tau))) for piece in view.pieces)
 
 
 def _of_torque_delay(view: LogView, delay: Delay) -> Finding:
@@ -122,6 +177,12 @@ def _of_inertia(inertia: Inertia) -> Finding:
     unit, given = "kg.m2", inertia.given
     if inertia.is_geared:
         return finding(Kind.TORQUE_SCALE, Severity.WRONG, inertia, unit, given)
-    is_wrong = given == _AWAS or distance(inertia.measured, given) > _LARGE
+    is_wrong = given == _AWAS or _is_far(inertia, _LARGE)
     severity = Severity.WRONG if is_wrong else Severity.NOTE
     return finding(Kind.INERTIA, severity, inertia, unit, given)
+
+
+def _is_far(inertia: Inertia, factor: float) -> bool:
+    """Returns whether the inertia differs from the configured one by more than a factor, given as
+    its logarithm."""
+    return distance(inertia.measured, inertia.given) > factor

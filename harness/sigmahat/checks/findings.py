@@ -55,6 +55,7 @@ class Kind(str, Enum):
     SATURATION = "saturation of the torque"
     NO_TORQUE = "torque that is only noise"
     NOISE = "prediction error and noise"
+    UNEXPLAINED = "torque that the motion does not explain"
     MISFIT = "misfit of the model"
     DOUBT = "reasons of doubt"
     RANGE = "range of the deformation"

@@ -128,6 +128,8 @@ _SPECIAL = {
     (Kind.SLOPE, "sign"): "q moves against theta",
     (Kind.SLOPE, "swap"): "the columns of theta and q are swapped: the link would move "
     "{value:.4g} times as far",
+    (Kind.SIGN, "power"): "with this sign the joint would drive its motor, by {measured} on "
+    "average, and friction takes power from the motor",
     (Kind.AT_REST, "q"): "the link does not move while the motor does: its encoder is dead, or the "
     "column is wrong. If the link is locked on purpose, write ports.q.value = 0 in place of the "
     "column",
@@ -171,6 +173,9 @@ _SENTENCES: Mapping[Kind, str] = {
     Kind.NO_TORQUE: "the torque is only noise ({measured}): the motor is off, or the column is "
     "wrong. The stiffness then rests on motor.B, motor.D_theta and the Coulomb friction alone",
     Kind.NOISE: "the noise of the torque is {measured}, the configuration says {expected}",
+    Kind.UNEXPLAINED: "the model does not fit: {percent} of the torque (RMS) remain with any sign, "
+    "gear, zero, delay and inertia. Is it the torque of this joint? Does another load act on the "
+    "motor, as a payload or a weight compensation before the spring? Does the link itself bend?",
     Kind.MISFIT: "the errors of the model are {value:.3g} times as large as noise explains",
     Kind.DOUBT: "not confident in {percent} of the second half: {reason}",
     Kind.RANGE: "the log has up to {measured}, the configuration {expected} (identify sets it)",

@@ -378,6 +378,14 @@ def residual(e: Equations) -> float:
     return float(left @ left)
 
 
+def explained(e: Equations) -> float:
+    """Computes the share of the variance of the torque that the equations explain, with ordinary
+    least squares [1]; 0 for a constant torque."""
+    constant = [name for name in (CONSTANT, *eta(1, 1)) if name in e.names][:1]
+    spread = residual(e.only(constant))
+    return 1 - residual(e) / spread if spread else 0.0
+
+
 def is_worse(one: Fit, other: Fit) -> bool:
     """Returns whether the squared errors of `one` are significantly larger than of `other`."""
     return is_more(one.squares - other.squares)

@@ -192,6 +192,18 @@ def with_damped_spring(view: LogView, form: Form) -> Fit:
     return with_form(replace(view, pieces=pieces), form)
 
 
+def with_all_corrections(view: LogView, form: Form) -> Equations:
+    """Computes equations that also have what a gear ratio or a delay that is slightly wrong does,
+    with all powers of the spring, and as if the configuration gave no inertia."""
+    pieces = []
+    for piece in view.pieces:
+        rates = [np.gradient(signal, view.T) for signal in (piece.phi, piece.tau)]
+        of_torque = rates[: 1 if view.has_sensor else 2]
+        pieces.append(replace(piece, extra=np.column_stack([piece.theta, *of_torque])))
+    corrected = replace(view, pieces=pieces)
+    return _free_equations(corrected, replace(form, n=_ORDERS).with_all_powers())
+
+
 def with_all_powers(view: LogView, form: Form) -> Fit:
     return fit(_chosen(view, replace(form, n=_ORDERS).with_all_powers()).equations)
 

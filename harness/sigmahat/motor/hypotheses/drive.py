@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sigmahat.motor.equation import CONSTANT, WIDEST, Equations, Form, equations, residual
+from sigmahat.motor.equation import CONSTANT, WIDEST, Equations, Form, equations, explained
 from sigmahat.motor.hypotheses.slope import slope_of
 from sigmahat.motor.noise import low_pass
 from sigmahat.motor.quick_fit import LINEAR
@@ -46,10 +46,8 @@ def drive(x: Array, y: Array, tau: Array) -> Drive:
     v_s = _COULOMB * float(np.abs(velocity).max())
     form = Form(_HIGHEST, _HIGHEST, coulomb_velocity=v_s)
     system = equations([piece], _T, 1.0, form)
-    spread = residual(system.only([CONSTANT]))
-    explained = 1 - residual(system) / spread if spread else 0.0
     of_deformation, of_torque = _powers(system)
-    return Drive(explained, 0 if _sign(of_deformation) > 0 else _sign(of_torque))
+    return Drive(explained(system), 0 if _sign(of_deformation) > 0 else _sign(of_torque))
 
 
 def _powers(system: Equations) -> tuple[Array, Array]:

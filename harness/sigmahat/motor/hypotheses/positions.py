@@ -105,6 +105,7 @@ class Positions:
     may_be_held: bool = False
     """Whether a hand may have moved the link while a drive held the motor. In this case, the scale
     is not corrected."""
+    by_torque: bool = False  # whether the scale is another one because of the torque alone
     sign: Evidence | None = None  # slope of q on theta, if another sign explains it
 
     @property
@@ -144,7 +145,8 @@ def _with_scale(before: Positions, slope: Slope) -> Positions:
         if distance(hypothesis.on_theta, size) < _LIKE
     ]
     gear = _refined(view, size)
-    best = _likely(view, slope) or _by_torque(before, slope, [gear, *near])
+    likely = _likely(view, slope)
+    best = likely or _by_torque(before, slope, [gear, *near])
     if best is None:
         return before
     others = {
@@ -156,7 +158,7 @@ def _with_scale(before: Positions, slope: Slope) -> Positions:
     if size > 1 and not _is_gamma(best, view) and _is_positive(before.fit):
         return replace(before, scale=evidence, may_be_held=True)
     corrected = best.applied(view)
-    return Positions(corrected, _fit(corrected), evidence)
+    return Positions(corrected, _fit(corrected), evidence, by_torque=likely is None)
 
 
 def _is_positive(fit: QuickFit | None) -> bool:

@@ -11,6 +11,7 @@ import numpy as np
 
 from sigmahat.motor.equation import Fit, Form, explains
 from sigmahat.motor.friction import few_frictions, slower
+from sigmahat.motor.hypotheses.drive import drive
 from sigmahat.motor.hypotheses.hypothesis import Evidence, Hypothesis, distance, gear_of_slope
 from sigmahat.motor.hypotheses.positions import Positions
 from sigmahat.motor.inertia import KnownInertia
@@ -34,6 +35,14 @@ from sigmahat.motor.quick_fit import (
 )
 from sigmahat.motor.spring import is_off
 from sigmahat.recording.units import scale
+
+
+@dataclass(frozen=True)
+class Sign(Evidence):
+    """A torque of the wrong sign: the stiffness would be `measured` [N.m/rad]."""
+
+    power: float  # mean power that the motor would take from the joint [W]
+    by_power: bool  # whether the power shows the sign, and the stiffness does not
 
 
 @dataclass(frozen=True)
@@ -67,7 +76,7 @@ class TorqueEvidence:
     """What the torque shows against a configuration; None for what it does not contradict."""
 
     gear: Evidence | None = None  # slope of q on theta by a slightly wrong gear ratio [1]
-    sign: Evidence | None = None  # stiffness with the configured sign of the torque [N.m/rad]
+    sign: Sign | None = None
     deformation: Evidence | None = None  # negative stiffness by a wrong deformation [N.m/rad]
     zero: Zero | None = None
     asymmetry: Evidence | None = None  # ratio of the errors, without and with even powers [1]
@@ -92,6 +101,8 @@ def compare_torque(positions: Positions) -> TorqueEvidence:
         return TorqueEvidence(gear=gear)
     if -np.sign(view.gamma) * fit.scores[LINEAR] < -1:
         return _negative_stiffness(view, fit)
+    if not view.has_sensor and fit.sign_of_motor < 0 and _is_driven(view):
+        return TorqueEvidence(sign=_other_sign(view, fit, by_power=True))
     zero = _zero(view, fit)
     asymmetry = None if zero is not None else _asymmetry(view, fit)
     if view.has_sensor:
@@ -126,10 +137,26 @@ def _negative_stiffness(view: LogView, fit: QuickFit) -> TorqueEvidence:
     )
 
 
-def _other_sign(view: LogView, fit: QuickFit) -> Evidence:
+def _other_sign(view: LogView, fit: QuickFit, by_power: bool = False) -> Sign:
     port = "tau_e_sensor" if view.has_sensor else "tau"
     sign = -view.configuration.ports[port].sign
-    return Evidence(fit.stiffness, [Hypothesis(f"ports.{port}.sign", sign, "tau", -1.0)])
+    hypotheses = [Hypothesis(f"ports.{port}.sign", sign, "tau", -1.0)]
+    piece = view.longest
+    velocity = view.gamma * np.gradient(piece.theta, view.T)
+    power = -float(np.mean((piece.tau - piece.tau.mean()) * velocity))
+    return Sign(fit.stiffness, hypotheses, power, by_power)
+
+
+def _is_driven(view: LogView) -> bool:
+    """Returns whether the motor takes power from the joint throughout the log, and no hand moves
+    the link. That cannot be, because friction takes power from the motor.
+
+    In slow motion of a stiff joint most of the torque is friction, so the power shows the sign of
+    the torque where the stiffness does not.
+    """
+    piece = view.longest
+    sign = drive(piece.theta, piece.theta + piece.phi, piece.tau).sign
+    return bool(sign == -np.sign(view.gamma))
 
 
 _LEAST_GEAR = 2e-3
