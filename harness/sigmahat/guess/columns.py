@@ -108,8 +108,11 @@ def likely_unit(unit: str, T: float) -> str | None:
 
 
 def _plausible(step: float, most: float) -> str | None:
-    """Finds the unit in which a time step is plausible, at most `most` [s]; None without one."""
-    units = ("s", "ms", "us", "ns")
+    """Finds the unit in which a time step is plausible, at most `most` [s]; None without one.
+
+    Spreadsheets and MATLAB count times in days.
+    """
+    units = ("s", "ms", "us", "ns", "day")
     return next((each for each in units if _FASTEST <= step * seconds(each) <= most), None)
 
 

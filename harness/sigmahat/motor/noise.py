@@ -15,6 +15,7 @@ _WINDOWS = 40
 _ONLY_NOISE = 1.2  # largest ratio of signal variance to noise variance of a signal without motion
 _LOWEST = 5.0  # [Hz]
 _HIGHEST = 0.1  # highest bandwidth divided by the sampling frequency
+_MOST_REFLECTIONS = 16
 SETTLED = 8.0  # periods of the low pass after which a step response has decayed to 1e-15
 
 
@@ -86,7 +87,8 @@ def low_pass(values: Array, frequency: float, h: float) -> Array:
 
     The gain is equal to the filter of scipy.signal (bilinear), which takes a second to import.
     """
-    settled = math.ceil(SETTLED / (frequency * h))
+    # A filter that is slower than the samples sees only the reflections: more of them add nothing.
+    settled = min(math.ceil(SETTLED / (frequency * h)), _MOST_REFLECTIONS * len(values))
     ends = [(settled, settled), *[(0, 0)] * (values.ndim - 1)]
     padded = np.pad(values, ends, mode="reflect", reflect_type="odd")
     # The size is a product of small primes, for which the Fourier transform is fast.

@@ -101,6 +101,50 @@ class RepeatedName(Note):
         return f"column {self.column!r} is there again: it is called {self.renamed!r} here"
 
 
+@dataclass(frozen=True, kw_only=True)
+class NamesAgain(Note):
+    """The names of the columns stand between the rows: several recordings are in one file."""
+
+    kind: Literal["names_again"] = "names_again"
+    line: int  # the first of these lines in the file, from 1 on
+    lines: int
+
+    @property
+    def in_words(self) -> str:
+        again = "" if self.lines == 1 else f", the first of {self.lines} such lines"
+        return (
+            f"line {self.line} has the names of the columns again{again}: several recordings are "
+            "in this file, and are read as one log"
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class PrefixLeftOut(Note):
+    """Each line begins with the time at which a terminal received it."""
+
+    kind: Literal["prefix_left_out"] = "prefix_left_out"
+    prefix: str  # of the first line
+
+    @property
+    def in_words(self) -> str:
+        return (
+            f"the beginning of each line, such as {self.prefix!r}, left out: the clock of the "
+            "terminal"
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class ThousandsSeparated(Note):
+    """Numbers have a separator between thousands, such as 1.234,56."""
+
+    kind: Literal["thousands_separated"] = "thousands_separated"
+    example: str
+
+    @property
+    def in_words(self) -> str:
+        return f"numbers such as {self.example} have separators of thousands, which were left out"
+
+
 def _lines(count: int) -> str:
     return "1 line" if count == 1 else f"{count} lines"
 
@@ -438,7 +482,8 @@ class FirstPart(Note):
 
 
 RecordingNote = Annotated[
-    Encoding | RowOfUnits | LinesAboveTable | CommentsLeftOut | RepeatedName | ShortRow
+    Encoding | RowOfUnits | LinesAboveTable | CommentsLeftOut | NamesAgain
+    | PrefixLeftOut | ThousandsSeparated | RepeatedName | ShortRow
     | Rows | NoTimeColumn | RepeatedTimes | MissingTimes | ClockStartedAgain | ClockSetBack
     | NoSignal | PlaceholderLeftOut | HeldLeftOut | CounterReturned
     | Unwrapped | Delayed | Interpolated | FasterThanTicks | BetweenTicks | MissingSamples

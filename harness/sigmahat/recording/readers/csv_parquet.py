@@ -2,7 +2,6 @@
 
 import weakref
 from collections.abc import Iterator, Mapping, Sequence
-from mmap import ACCESS_READ, mmap
 from pathlib import Path
 from tempfile import TemporaryFile
 from typing import IO, Any
@@ -20,15 +19,15 @@ from sigmahat.recording.arrow_columns import (
 )
 from sigmahat.recording.limits import MOST_TEXT, check_columns, check_numbers
 from sigmahat.recording.log import Array, Log, LogError
-from sigmahat.recording.notes import CommentsLeftOut, Encoding, ShortRow
-from sigmahat.recording.readers.dialect import SPACES, dialect
+from sigmahat.recording.notes import Encoding, ShortRow
+from sigmahat.recording.readers.dialect import dialect
+from sigmahat.recording.readers.tidy_text import TidyText
 
 _BLOCK = 1 << 20  # bytes of a CSV file that are parsed at a time
 _ALWAYS_READ = 100_000_000  # uncompressed size up to which a file is not checked [bytes]
 _BUFFER = 1 << 16  # bytes of a column that are read at a time, instead of a whole row group
 _ROWS = 1 << 16  # rows of a column that are read at a time
 _FEW = 100  # rows with text that are checked at a time
-_COMMENTS = (b"#", b"%", b"//")  # signs at the beginning of a comment
 _SHOWN = 60  # characters of a row that a message shows
 
 
@@ -122,15 +121,14 @@ class CsvLog(Log):
         names = self._names = list(self.dialect.names)
         self._cut: list[int] = []  # number of values of a row that is too short
         self._wrong: pa.csv.InvalidRow | None = None  # a row that ends the reading
-        self._comments = 0  # lines of comments between the rows
-        self._tidy: Path | IO[bytes] | None = None  # what _text() returns, after its first call
+        self._tidy = TidyText(path, self.dialect)
         self._parse = pa.csv.ParseOptions(
             delimiter=self.dialect.delimiter, invalid_row_handler=self._left_out
         )
         super().__init__(path, dict.fromkeys(names, 0))
         if self.dialect.encoding != "utf-8":
             self.notes.append(Encoding(encoding=self.dialect.encoding))
-        self.notes += self.dialect.notes
+        self.notes += [*self.dialect.notes, *self._tidy.notes]
         file = TemporaryFile(prefix="sigmahat-")  # noqa: SIM115
         weakref.finalize(self, file.close)  # closing removes the file
         self._copy = self._copied(file)
@@ -138,8 +136,6 @@ class CsvLog(Log):
         self.columns = dict.fromkeys(names, self._copy.metadata.num_rows)
         if self._cut:
             self.notes.append(ShortRow(values=self._cut[0], columns=len(names)))
-        if self._comments:
-            self.notes.append(CommentsLeftOut(lines=self._comments))
 
     def _left_out(self, row: pa.csv.InvalidRow) -> str:
         """Skips one row that is too short, such as the last row of an interrupted recording."""
@@ -219,35 +215,7 @@ class CsvLog(Log):
             skip_rows=self.dialect.head,
             encoding=self.dialect.encoding,
         )
-        return pa.csv.open_csv(self._text(), read, self._parse, options)
-
-    def _text(self) -> Path | IO[bytes]:
-        """The text of the table without comments between its rows, and with one delimiter between
-        two columns: the file itself, or a copy.
-        """
-        if self._tidy is None:
-            is_tidy = not self._is_aligned and not _has_comments(self.path)
-            self._tidy = self.path if is_tidy else self._copied_text()
-        if not isinstance(self._tidy, Path):
-            self._tidy.seek(0)
-        return self._tidy
-
-    def _copied_text(self) -> IO[bytes]:
-        copy = TemporaryFile(prefix="sigmahat-")  # noqa: SIM115
-        weakref.finalize(self, copy.close)
-        with self.path.open("rb") as file:
-            for number, line in enumerate(file):
-                text = line.lstrip()
-                if number >= self.dialect.head and text.startswith(_COMMENTS):
-                    self._comments += 1
-                    continue
-                copy.write(b" ".join(text.split()) + b"\n" if self._is_aligned else line)
-        return copy
-
-    @property
-    def _is_aligned(self) -> bool:
-        """Whether any number of spaces is between two columns."""
-        return self.dialect.delimiter == SPACES
+        return pa.csv.open_csv(self._tidy.open(), read, self._parse, options)
 
     def _parsed(self, copy: pa.parquet.ParquetFile, name: str) -> pa.ChunkedArray:
         """Parses a text column of the Parquet copy; the type fits all values of the column."""
@@ -255,12 +223,6 @@ class CsvLog(Log):
         pa.csv.write_csv(copy.read([name], use_threads=False), text)
         options = pa.csv.ConvertOptions(decimal_point=self.dialect.decimal)
         return pa.csv.read_csv(pa.BufferReader(text.getvalue()), convert_options=options).column(0)
-
-
-def _has_comments(path: Path) -> bool:
-    """Whether lines of a file begin with the sign of a comment; the first line is not looked at."""
-    with path.open("rb") as file, mmap(file.fileno(), 0, access=ACCESS_READ) as text:
-        return any(text.find(b"\n" + sign) >= 0 for sign in _COMMENTS)
 
 
 def _is_flat(kind: pa.DataType) -> bool:

@@ -9,18 +9,25 @@ import csv
 import re
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from sigmahat.recording.arrow_columns import is_number
 from sigmahat.recording.limits import check_columns
 from sigmahat.recording.log import LogError
 from sigmahat.recording.notes import LinesAboveTable, RecordingNote, RepeatedName, RowOfUnits
+from sigmahat.recording.readers.encodings import first_lines
 
 LONGEST_LINE = 1 << 20  # characters
 _LINES = 200  # that are looked at to find the table
 _COMMENT = re.compile(r"\s*(#|%|//)+\s?")
 _SEPARATOR = re.compile(r"sep=(.)", re.IGNORECASE)  # the first line, for Excel
+PREFIX = re.compile(
+    r"\[[^\[\]]*\d\d:\d\d:\d\d[^\[\]]*\]\s*"
+    r"|(?:\d{4}-\d\d-\d\d[ T])?\d\d:\d\d:\d\d(?:[.,]\d+)?\s*->\s*"
+)
+"""The time at which a terminal received a line: "12:03:44.123 -> " or "[2026-03-12 12:03:44] "."""
+_THOUSANDS = re.compile(r"(?<![\d.,])[1-9]\d{0,2}(?:\.\d{3})+(?![\d.])")  # 1.234 of 1.234,56
 _DELIMITERS = ("\t", ";", ",")
 SPACES = " "  # delimiter of a table whose columns are aligned with any number of spaces
 _ALIKE = 3  # lines with equally many values that show the delimiter
@@ -36,31 +43,31 @@ class Dialect:
     decimal: str  # point or comma in numbers
     encoding: str
     head: int  # lines before the first row
+    names_line: str = ""  # the line with the names, as it is in the file
+    prefix: str = ""
+    """What a terminal wrote before the first line, and in the same form before all lines."""
     notes: Sequence[RecordingNote] = ()  # what was done to read the table
 
 
 def dialect(path: Path) -> Dialect:
     """Detects the format of a text file. Raises LogError if the file contains no table."""
-    lines, encoding = _first_lines(path)
+    found = first_lines(path, _LINES, LONGEST_LINE)
+    if found is None:
+        raise LogError(
+            f"{path}: unknown binary format; expected CSV, Parquet, MAT, HDF5, MCAP or a ROS 2 bag"
+        )
+    lines, encoding = found
     for i, line in enumerate(lines, 1):
         if len(line) >= LONGEST_LINE:
             raise LogError(
                 f"{path}: expected lines of at most {LONGEST_LINE} characters; see line {i}"
             )
     lines = [line.strip("\r\n").removeprefix("\ufeff") for line in lines]
-    return _Table(path, lines, encoding).dialect()
-
-
-def _first_lines(path: Path) -> tuple[list[str], str]:
-    """Reads the first lines and finds the encoding. Raises LogError for a binary file."""
-    for encoding in ("utf-8", "windows-1252"):
-        with path.open(encoding=encoding, newline="") as file, suppress(UnicodeDecodeError):
-            lines = [file.readline(LONGEST_LINE) for _ in range(_LINES)]
-            if all(c.isprintable() or c in "\t\r\n\ufeff" for line in lines for c in line):
-                return [line for line in lines if line], encoding
-    raise LogError(
-        f"{path}: unknown binary format; expected CSV, Parquet, MAT, HDF5, MCAP or a ROS 2 bag"
-    )
+    prefixes = [PREFIX.match(line) for line in lines if line]
+    prefix = prefixes[0][0] if len(prefixes) > 1 and prefixes[0] and all(prefixes) else ""
+    if prefix:
+        lines = [PREFIX.sub("", line, count=1) for line in lines]
+    return replace(_Table(path, lines, encoding).dialect(), prefix=prefix)
 
 
 class _Table:
@@ -100,9 +107,17 @@ class _Table:
         names = self._distinct(names)
         self._note_skipped(names_line, row)
         text = "".join(self._lines[row:])
-        comma = self._delimiter in (";", "\t", SPACES) and "," in text and "." not in text
-        decimal = "," if comma else "."
-        return Dialect(names, self._delimiter, decimal, self._encoding, row, self._notes)
+        is_comma = "," in text and "." not in _THOUSANDS.sub("", text)
+        decimal = "," if self._delimiter in (";", "\t", SPACES) and is_comma else "."
+        return Dialect(
+            names,
+            self._delimiter,
+            decimal,
+            self._encoding,
+            row,
+            self._lines[names_line],
+            notes=self._notes,
+        )
 
     def _find_delimiter(self) -> str:
         """The delimiter with which some lines in a row have equally many values.
@@ -223,5 +238,10 @@ def _is_row(cells: Sequence[str]) -> bool:
 
 
 def _may_be_value(cell: str) -> bool:
-    """Whether a cell may be a number, a date or a missing value instead of a name or a unit."""
-    return cell[:1].isdigit() or (is_number(cell.replace(",", ".")) and cell != "")
+    """Whether a cell may be a number, a date or a missing value instead of a name or a unit.
+
+    A date has more digits than letters, unlike a name such as "0x6064:00 Position" or "1st motor".
+    """
+    digits, letters = sum(map(str.isdigit, cell)), sum(map(str.isalpha, cell))
+    is_date = cell[:1].isdigit() and digits >= letters
+    return is_date or (is_number(cell.replace(",", ".")) and cell != "")
