@@ -41,6 +41,18 @@ N = 7000
         ("series_elastic_torque", "torque", None, None),
         ("calibrated", None, None, None),
         ("Motortemperatur [°C]", "other", "motor", None),
+        ("joint.link.position [arcmin]", "position", "link", "arcmin"),
+        ("joint.motor.torque [mN*m]", "torque", "motor", "mN.m"),
+        ("exo_torque_Nm_per_kg", "torque", None, None),
+        ("as5048_u14", None, None, None),
+        ("motor_angle_u16", "position", "motor", None),
+        ("motor_q_i1", "position", "motor", None),
+        ("モータ角度[deg]", "position", "motor", "deg"),
+        ("リンク角度", "position", "link", None),
+        ("モータトルク[Nm]", "torque", "motor", "N.m"),
+        ("电机位置(度)", "position", "motor", "deg"),
+        ("连杆位置(度)", "position", "link", "deg"),
+        ("电机电流(A)", "current", "motor", "A"),
     ],
 )
 def test_names(name: str, quantity: str | None, side: str | None, unit: str | None) -> None:
@@ -97,7 +109,8 @@ def m() -> Motion:
 
 
 @pytest.mark.parametrize(
-    ("step", "unit"), [(1_000_000, "ns"), (1000, "us"), (1, "ms"), (0.001, "s"), (5, "ms")]
+    ("step", "unit"),
+    [(1_000_000, "ns"), (1000, "us"), (1, "ms"), (0.001, "s"), (5, "ms"), (1.157e-7, "day")],
 )
 def test_the_unit_of_times_by_their_steps(step: float, unit: str, m: Motion) -> None:
     found = only({"t": step * np.arange(N), "theta": m.theta, "q": m.q, "tau": m.tau})
@@ -150,3 +163,16 @@ def test_what_was_asked_for_is_not_what_was_measured(suffix: str, m: Motion) -> 
     assert ports["q"].column == "q"
     assert suffix == "" or ports["theta"].column == "motor_position"
     assert "theta_c" not in ports or suffix == ""
+
+
+def test_times_that_stand_in_two_rows_each_are_times(m: Motion) -> None:
+    log = {"time": T * np.arange(N), "theta": m.theta, "q": m.q, "tau": m.tau}
+    found = only({name: np.repeat(values, 2) for name, values in log.items()})
+    assert (found.time, found.clock.interval) == ("time", T)
+
+
+def test_a_torque_far_from_zero_has_an_offset_to_check(m: Motion) -> None:
+    counts = np.round(2043 + 500 * m.tau / np.abs(m.tau).max())
+    found = only({"t_s": T * np.arange(N), "theta": m.theta, "q": m.q, "adc_i": counts})
+    assert abs(found.ports["tau"].zero - 2043) < 100
+    assert found.ports["tau"].notes["zero"].startswith("CHECK")

@@ -35,6 +35,12 @@ FORMS = {
     "delimiters end all lines": HEAD.replace("\n", ",,\n") + rows(end=",,\n"),
     "quotes": ",".join(f'"{name}"' for name in NAMES) + "\n" + rows(),
     "a comment between the rows": f"{HEAD}{rows()}# paused, for, some, reason\n",
+    "the time of a terminal before each line": "".join(
+        f"12:03:44.{k:03} -> {line}\n" for k, line in enumerate((HEAD + rows()).split())
+    ),
+    "dates of a terminal before each line": "".join(
+        f"[2026-03-12 12:03:44] {line}\n" for line in (HEAD + rows()).split()
+    ),
     "a column without a name": "," + HEAD + "".join(f"7,{line}\n" for line in rows().split()),
 }
 
@@ -89,3 +95,78 @@ def test_a_refusal_names_the_line_and_the_true_reason(
     (tmp_path / "log.csv").write_text(text)
     with pytest.raises(LogError, match=words):
         open_log(tmp_path / "log.csv")
+
+
+JAPANESE = ("時間", "モータ角度", "リンク角度", "トルク")
+ENCODED = {
+    "cp932": JAPANESE,
+    "gb18030": ("时间", "电机位置", "连杆位置", "电机电流"),
+    "cp949": ("시간", "모터각도", "링크각도", "토크"),
+    "windows-1251": ("Время", "Положение двигателя", "Положение звена", "Момент"),
+    "windows-1252": ("Zeit", "Größe [°]", "Länge µ", "Nachläufe"),
+}
+
+
+@pytest.mark.parametrize("encoding", ENCODED)
+def test_what_spreadsheets_write_is_decoded(encoding: str, tmp_path: Path) -> None:
+    names = ENCODED[encoding]
+    text = ",".join(names) + "\n" + rows()
+    (tmp_path / "log.csv").write_bytes(text.encode(encoding))
+    log = open_log(tmp_path / "log.csv")
+    assert list(log.columns) == list(names)
+    np.testing.assert_allclose(log.read(names[1]), np.transpose(VALUES)[1], atol=1e-6)
+    assert [note.in_words for note in log.notes] == [f"read as {encoding}: the file is not UTF-8"]
+
+
+def test_a_name_may_begin_with_a_digit(tmp_path: Path) -> None:
+    names = ["Time [ms]", "0x6064:00 Position actual value", "1st torque", "0x6041:00 Statusword"]
+    (tmp_path / "log.csv").write_text(",".join(names) + "\n" + rows())
+    assert list(open_log(tmp_path / "log.csv").columns) == names
+
+
+THOUSANDS = {
+    "German": '"t";"x"\n' + "".join(f'"{k}";"-0,5"\n' for k in range(250)) + '"1.250";"-1.234,5"\n',
+    "English": "t;x\n" + "".join(f"{k};-0.5\n" for k in range(250)) + "1,250;-1,234.5\n",
+    "English, in quotes": "t,x\n"
+    + "".join(f"{k},-0.5\n" for k in range(250))
+    + '"1,250","-1,234.5"\n',
+}
+
+
+@pytest.mark.parametrize("form", THOUSANDS)
+def test_separators_between_thousands(form: str, tmp_path: Path) -> None:
+    (tmp_path / "log.csv").write_text(THOUSANDS[form])
+    log = open_log(tmp_path / "log.csv")
+    assert (log.read("t")[-1], log.read("x")[-1]) == (1250, -1234.5)
+    assert any("separators of thousands" in note.in_words for note in log.notes)
+
+
+def test_dates_have_no_thousands(tmp_path: Path) -> None:
+    lines = "".join(f"12.03.2026 14:03:{k:02};{k},5;0,{k}\n" for k in range(30))
+    (tmp_path / "log.csv").write_text("t;x;y\n" + lines)
+    assert open_log(tmp_path / "log.csv").read("x")[2] == 2.5
+
+
+def test_a_recording_that_was_appended(tmp_path: Path) -> None:
+    (tmp_path / "log.csv").write_text(HEAD + rows() + HEAD + rows())
+    log = open_log(tmp_path / "log.csv")
+    assert log.samples("time") == 2 * len(VALUES)
+    (note,) = log.notes
+    assert note.in_words.startswith("line 32 has the names of the columns again")
+
+
+def test_lines_of_json(tmp_path: Path) -> None:
+    lines = "".join(
+        f'{{"t": {t}, "motor": {{"pos": {a}, "torque": {b}}}, "link": [{c}, 0]}}\n'
+        for t, a, b, c in VALUES
+    )
+    (tmp_path / "log.jsonl").write_text(lines)
+    log = open_log(tmp_path / "log.jsonl")
+    assert list(log.columns) == ["t", "motor.pos", "motor.torque", "link[0]", "link[1]"]
+    np.testing.assert_allclose(log.read("motor.torque"), np.transpose(VALUES)[2])
+
+
+def test_a_document_of_json_is_refused_with_the_reason(tmp_path: Path) -> None:
+    (tmp_path / "log.json").write_text('[\n {"t": 0,\n "x": 1},\n {"t": 1, "x": 2}]\n')
+    with pytest.raises(LogError, match="expected one JSON object in each line"):
+        open_log(tmp_path / "log.json")

@@ -3,9 +3,11 @@
 import json
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pyarrow.csv
 import pytest
+import scipy.io
 from mcap.reader import make_reader
 
 import sigmahat
@@ -197,3 +199,26 @@ def test_several_joints_are_a_dimension() -> None:
     frame = found.to_dataframe()
     assert frame.index.names == ["joint", "t"]
     np.testing.assert_array_equal(frame.loc[1, "phi"], found["phi"][1])
+
+
+def test_an_array_of_structures_has_a_column_for_each_signal(tmp_path: Path) -> None:
+    signals = np.zeros((1, 3), dtype=[("Name", object), ("Unit", object), ("Data", object)])
+    for k, (name, unit) in enumerate((("Motor", "count"), ("Link", "deg"), ("Link", "deg"))):
+        signals[0, k] = name, unit, np.arange(5.0)[None, :] + k
+    recorded = {"X": {"Data": 0.1 * np.arange(5.0)}, "Y": signals}
+    scipy.io.savemat(tmp_path / "log.mat", {"rec": recorded})
+    log = open_log(tmp_path / "log.mat")
+    assert list(log.columns) == ["rec.X.Data", "Motor", "Link", "Link (2)"]
+    assert log.units == {"Motor": "count", "Link": "deg"}
+    np.testing.assert_array_equal(log.read("Link (2)"), np.arange(5.0) + 2)
+
+
+def test_units_in_attributes_of_hdf5(tmp_path: Path) -> None:
+    with h5py.File(tmp_path / "log.h5", "w") as file:
+        file["joint/position"] = np.arange(5.0).reshape(5, 1)
+        file["joint/position"].attrs["unit"] = "arcmin"
+        file["joint/torque"] = np.arange(5.0)
+        file["joint/torque"].attrs["units"] = np.bytes_("mN*m")
+        file["t"] = np.arange(5.0)
+    log = open_log(tmp_path / "log.h5")
+    assert log.units == {"joint.position": "arcmin", "joint.torque": "mN*m"}

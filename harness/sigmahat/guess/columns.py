@@ -19,6 +19,7 @@ from sigmahat.recording.units import seconds
 
 _MOSTLY = 0.99  # least fraction of increasing steps in a column of times
 _NAMED = 0.8  # least fraction of increasing steps in a column that is named as times
+_REPEATED = 0.3  # least fraction of steps that change in such a column
 _SAME_TIMES = 0.01  # tolerance of the time between samples, relative to that between rows
 _EVEN = 0.05  # largest relative difference of a step from the usual step
 _MISSING = 1.8  # ratio of a time step to the usual step beyond which rows are lost
@@ -73,13 +74,24 @@ def look_at(log: Log, name: str, quantity: str | None) -> tuple[Facts, Array]:
 
 def is_clock(meaning: Meaning, facts: Facts, values: Array) -> bool:
     """Returns whether a column contains times, by its name or by evenly increasing values."""
+    if facts.text or not facts.varies or facts.wrap is not None:
+        return False
+    if meaning.quantity == "time" and _is_repeated(values):
+        return True
     least = _NAMED if meaning.quantity == "time" else _MOSTLY
-    if facts.text or not facts.varies or facts.increasing < least or facts.wrap is not None:
+    if facts.increasing < least:
         return False
     if meaning.quantity is not None:
         return meaning.quantity == "time"
     steps = np.diff(values[np.isfinite(values)])
     return bool(np.mean(np.abs(steps / np.median(steps) - 1) < _EVEN) > 0.9)
+
+
+def _is_repeated(times: Array) -> bool:
+    """Returns whether times increase, but stand in several rows, as with two subscriptions."""
+    steps = np.diff(times[np.isfinite(times)])
+    changes = steps[steps != 0]
+    return len(changes) > _REPEATED * len(steps) and float(np.mean(changes > 0)) >= _NAMED
 
 
 def unit_of(meaning: Meaning, facts: Facts, values: Array) -> str:
@@ -273,7 +285,8 @@ def read_columns(log: Log) -> Columns:
     check_together(log.path, sum(log.columns.values()))
     facts: dict[str, Facts] = {}
     values: dict[str, Array] = {}
-    meanings = {name: meaning(name) for name in log.columns}
+    with_units = {name: f"{name} [{unit}]" for name, unit in log.units.items()}
+    meanings = {name: meaning(with_units.get(name, name)) for name in log.columns}
     for name in log.columns:
         facts[name], values[name] = look_at(log, name, meanings[name].quantity)
         if meanings[name].side == "setting":  # two settings make a set-point

@@ -22,6 +22,7 @@ from sigmahat.recording.units import TURN
 _ANGLES = ("theta", "q", "phi")
 _AS_OTHER = "CHECK: as the other position, with the gear that the motor moves farther by"
 _OF_ROS = "of a JointState of ROS (REP 103)"
+_OFFSET = 0.1  # ratio of the least torque to the range beyond which the column has an offset
 _SAME_TURN = 0.02  # as _AS_FAR, where a gear may explain the ratio as well
 _AS_FAR = 0.15  # largest relative difference between the motions of motor and link after the gear
 _APART = 4.0  # largest mean of the deformation with equal zeros, in standard deviations
@@ -308,9 +309,15 @@ def _set_torque(ports: Mapping[str, PortGuess], roles: Roles) -> None:
     farthest = max(abs(facts.low), abs(facts.high))
     if port.unit is None and meaning.quantity == "current":
         port.unit = "mA" if facts.integer or farthest > _MILLI else "A"
-        notes["unit"] = "CHECK: no unit in the name"
+        notes["unit"] = (
+            "CHECK: no unit in the name; for counts of the device, scale [N.m] in place of unit "
+            "and torque_constant"
+        )
     elif port.unit is None and not facts.integer:
         _set_unit_of_torque("tau", port, column)
+    if facts.low > _OFFSET * (facts.high - facts.low):
+        port.zero = _mean(column)
+        notes["zero"] = "CHECK: mean of the column, which is nowhere near 0; its value at no torque"
     if roles.drive.sign < 0:
         port.sign = -1
         notes["sign"] = "CHECK: else the motor would gain power from friction"
@@ -334,6 +341,10 @@ def _set_side(port: PortGuess, column: Column, theta: PortGuess | None) -> None:
     of_joint = meaning.suggested == "link" or meaning.side == "link"
     if meaning.quantity == "current" or port.unit in ("A", "mA"):
         port.notes["gear_ratio"] = "a current is of the motor, before the gear"
+        if theta is not None and theta.gear_ratio in (None, 1.0) and meaning.unit is None:
+            port.notes["gear_ratio"] = (
+                "CHECK: the ratio of the gear if torque_constant is of a servo, after its gear"
+            )
     elif meaning.side == "motor" and not meaning.effort:
         port.notes["gear_ratio"] = "by its name of the motor, before the gear"
     elif of_joint or (meaning.message and meaning.effort and meaning.side is None):

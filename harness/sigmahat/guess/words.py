@@ -13,7 +13,7 @@ import tomlkit
 _ORDER = ("other", "acceleration", "velocity", "position", "current", "torque", "time", "index")
 """Quantities by priority: the first one counts in a name with several, as "current position"."""
 _UNIT_OF = {
-    **dict.fromkeys(("rad", "mrad", "deg", "turn"), "position"),
+    **dict.fromkeys(("rad", "mrad", "deg", "turn", "arcmin", "arcsec"), "position"),
     **dict.fromkeys(("N.m", "mN.m", "kN.m", "N.cm"), "torque"),
     **dict.fromkeys(("A", "mA"), "current"),
     **dict.fromkeys(("s", "ms", "us", "ns"), "time"),
@@ -21,6 +21,8 @@ _UNIT_OF = {
 _INSIDE, _AT_AN_END, _PART = 5, 4, 3  # least numbers of letters of a word in a longer word
 _LETTERS = str.maketrans({"ß": "ss", "°": "deg", "µ": "u", "μ": "u", "θ": "theta", "τ": "tau"})
 _BRACKET = re.compile(r"[\[({<]([^\[\](){}<>]*)[\])}>]\s*$")
+_NUMBER_TYPE = re.compile(r"(?<=[_. ])(?:[ui](?:12|14|16|24|32)|u?int\d+|float\d+)(?:_t)?$")
+"""Type of a number at the end of a name, as in "angle_u16"."""
 _JOINT_STATE = re.compile(r"\.(position|velocity|effort)\[[^\[\]]*[^\d\[\]][^\[\]]*\]$")
 """Columns of a sensor_msgs/JointState, as readers/bags.py names them."""
 _TOKEN = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+|\d+")
@@ -105,7 +107,13 @@ def _first(section: str, order: Sequence[str], entries: Sequence[_Entry]) -> str
 
 def _plain(text: str) -> str:
     """Replaces accents and symbols of a text by plain letters; upper case is kept."""
-    decomposed = unicodedata.normalize("NFKD", text.translate(_LETTERS))
+    written = _vocabulary().written
+    # "ュ" and other parts of letters are composed, as they are in the words.
+    text = unicodedata.normalize("NFKC", text.translate(_LETTERS))
+    if not text.isascii():
+        for word in sorted(written, key=len, reverse=True):
+            text = text.replace(word, f" {written[word]} ")
+    decomposed = unicodedata.normalize("NFKD", text)
     return "".join(each for each in decomposed if not unicodedata.combining(each))
 
 
@@ -120,7 +128,7 @@ class _Unit:
 
 def _without_unit(name: str) -> tuple[_Unit, list[str]]:
     """Splits a name into the unit at its end and the other words."""
-    text, units = _plain(name), _vocabulary().units
+    text, units = _NUMBER_TYPE.sub("", _plain(name)), _vocabulary().units
     bracket = _BRACKET.search(text)
     if bracket:
         unit = units.get(re.sub(r"[\s.*·⋅]|\bin\b", "", bracket[1]).lower())
@@ -193,6 +201,7 @@ class _Vocabulary:
     entries: Mapping[str, _Entry]
     units: Mapping[str, _Unit]
     longest_first: Sequence[str]
+    written: Mapping[str, str]  # words in other scripts, and what they mean
 
 
 @cache
@@ -210,4 +219,5 @@ def _vocabulary() -> _Vocabulary:
         units |= dict.fromkeys(words, _Unit(foreign="velocity", speed=speed))
     for quantity, words in table["foreign"].items():
         units |= dict.fromkeys(words, _Unit(foreign=quantity))
-    return _Vocabulary(entries, units, sorted(known, key=len)[::-1])
+    written = {word: meant for meant, words in table["written"].items() for word in words}
+    return _Vocabulary(entries, units, sorted(known, key=len)[::-1], written)

@@ -26,6 +26,7 @@ class Log(ABC):
     def __init__(self, path: Path, columns: Mapping[str, int]) -> None:
         self.path = path  #: The file.
         self.columns = columns  #: Number of samples of each column.
+        self.units: dict[str, str] = {}  #: Of columns whose unit the file has beside the name.
         self.notes: list[RecordingNote] = []  #: On reading the file.
 
     def read(self, name: str) -> Array:

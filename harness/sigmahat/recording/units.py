@@ -9,11 +9,18 @@ from typing import TypeVar
 from sigmahat.recording.configuration import PORTS, Port
 from sigmahat.recording.log import Array, LogError
 
-TURN = {"rad": 2 * math.pi, "mrad": 2000 * math.pi, "deg": 360.0, "turn": 1.0}
+TURN = {
+    "rad": 2 * math.pi,
+    "mrad": 2000 * math.pi,
+    "deg": 360.0,
+    "turn": 1.0,
+    "arcmin": 21600.0,
+    "arcsec": 1296000.0,
+}
 """Size of one turn in each unit of angle."""
 _Values = TypeVar("_Values", float, Array)
 _USUAL = ("rad", "mrad", "deg", "turn", "counts", "N.m", "mN.m", "kN.m", "lbf.in", "A", "mA", "mm")
-_USUAL_TIMES = ("s", "ms", "us", "ns", "min", "h")
+_USUAL_TIMES = ("s", "ms", "us", "ns", "min", "h", "day")
 _LONGEST = 40  # characters of a unit
 _SMALL = "\u2070\u00b9\u00b2\u00b3\u2074-\u2079"  # digits that are written as exponents
 _TOWER = re.compile(rf"[\d){_SMALL}]\s*(\*\*|\^|[{_SMALL}])|(\*\*|\^)\s*[+-]?\s*(\d\d|[^\d\s+-])")

@@ -27,7 +27,10 @@ PREFIX = re.compile(
     r"|(?:\d{4}-\d\d-\d\d[ T])?\d\d:\d\d:\d\d(?:[.,]\d+)?\s*->\s*"
 )
 """The time at which a terminal received a line: "12:03:44.123 -> " or "[2026-03-12 12:03:44] "."""
-_THOUSANDS = re.compile(r"(?<![\d.,])[1-9]\d{0,2}(?:\.\d{3})+(?![\d.])")  # 1.234 of 1.234,56
+_NO_DECIMAL_POINT = re.compile(
+    r"(?<![\d.,])[1-9]\d{0,2}(?:\.\d{3})+(?![\d.])|\d{1,2}\.\d{1,2}\.\d{2,4}|:\d\d\.\d+"
+)
+"""Points in 1.234 of 1.234,56, in a date and in a time of day."""
 _DELIMITERS = ("\t", ";", ",")
 SPACES = " "  # delimiter of a table whose columns are aligned with any number of spaces
 _ALIKE = 3  # lines with equally many values that show the delimiter
@@ -107,7 +110,7 @@ class _Table:
         names = self._distinct(names)
         self._note_skipped(names_line, row)
         text = "".join(self._lines[row:])
-        is_comma = "," in text and "." not in _THOUSANDS.sub("", text)
+        is_comma = "," in text and "." not in _NO_DECIMAL_POINT.sub("", text)
         decimal = "," if self._delimiter in (";", "\t", SPACES) and is_comma else "."
         return Dialect(
             names,

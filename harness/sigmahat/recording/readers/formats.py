@@ -1,11 +1,13 @@
 """Opens a log. The format is determined by the contents of the file, not by the file name."""
 
+import re
 from pathlib import Path
 
 from sigmahat.recording.limits import check_columns
 from sigmahat.recording.log import Log, LogError
 from sigmahat.recording.readers.bags import read_bag
 from sigmahat.recording.readers.csv_parquet import CsvLog, ParquetLog
+from sigmahat.recording.readers.json_lines import JsonLog
 from sigmahat.recording.readers.matrices import read_hdf5, read_mat
 
 _PACKED = (
@@ -19,11 +21,12 @@ _PACKED = (
     (b"BZh", "compressed with bzip2", "unpack it: bunzip2 --keep {}"),
     (b"\x28\xb5\x2f\xfd", "compressed with Zstandard", "unpack it: unzstd {}"),
 )
+_JSON = re.compile(rb"(\xef\xbb\xbf)?\s*(\[\s*)?\{")  # one object, or an array of objects
 _HEAD = 520  # bytes; in files of MATLAB the signature of HDF5 is at byte 512
 
 
 def open_log(path: str | Path) -> Log:
-    """A log in CSV, Parquet, MAT (v5 to v7.3), HDF5, MCAP, or a ROS 2 bag.
+    """A log in CSV, JSON Lines, Parquet, MAT (v5 to v7.3), HDF5, MCAP, or a ROS 2 bag.
 
     Only the file itself is read, or the files in the folder of the bag, but no files outside to
     which they refer. Raises LogError if the file is missing, empty, damaged, or of another format,
@@ -62,6 +65,8 @@ def _reader(path: Path, head: bytes) -> Log:
     for begin, what, then in _PACKED:
         if head.startswith(begin):
             raise LogError(f"{path}: {what}; {then.format(path)}, and name the result")
+    if _JSON.match(head):
+        return JsonLog(path)
     if b"\0" in head:
         raise LogError(
             f"{path}: unknown format; expected CSV, Parquet, MAT, HDF5, MCAP or a ROS 2 bag"

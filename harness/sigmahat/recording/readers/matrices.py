@@ -1,7 +1,9 @@
 """Reads MAT files of MATLAB (v5 to v7.3) and HDF5 files.
 
 A vector becomes one column. A matrix becomes columns "x[0]", "x[1]" along its longer side. In a
-structure or group, the path is part of the name of the column: "joint.theta".
+structure or group, the path is part of the name of the column: "joint.theta". Recorders such as
+ControlDesk and the scopes of Simulink write an array of structures, one for each signal with its
+name in it, which is then the name of the column. Units are in the structure, or in an attribute.
 
 The elements of a MAT file of version 5 to 7 are checked before scipy reads the file. The reason is
 that scipy unpacks variables of any size, and uses the kind of an element as an index. After a
@@ -11,7 +13,7 @@ The data of a variable are a sequence of elements, again with tags.
 
 import struct
 import zlib
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import suppress
 from itertools import chain
 from pathlib import Path
@@ -122,24 +124,56 @@ def read_mat(path: Path) -> LogInMemory:
         variables = scipy.io.loadmat(path, struct_as_record=False)
     except Exception as error:  # any: for a damaged file scipy raises many kinds
         raise LogError(f"{path}: damaged MAT file ({error}); save it again") from error
-    own = (_fields(path, *each) for each in variables.items() if not each[0].startswith("__"))
-    return _log(path, chain.from_iterable(own))
+    units: dict[str, str] = {}
+    own = (
+        _fields(path, *each, units) for each in variables.items() if not each[0].startswith("__")
+    )
+    return _log(path, chain.from_iterable(own), units)
 
 
-def _fields(path: Path, name: str, value: Any) -> Named:
+_NAMES, _UNITS = ("Name", "name", "label", "blockName"), ("Unit", "unit", "Units", "units")
+_VALUES = ("Data", "data", "values", "Values")
+
+
+def _fields(path: Path, name: str, value: Any, units: dict[str, str]) -> Named:
+    """Yields the columns of a variable; units gets those that the variable has."""
     fields = getattr(value, "_fieldnames", None)
     if fields is not None:
         for field in fields:
-            yield from _fields(path, f"{name}.{field}", getattr(value, field))
+            yield from _fields(path, f"{name}.{field}", getattr(value, field), units)
     elif isinstance(value, np.ndarray) and value.dtype == object and value.size == 1:
-        yield from _fields(path, name, value.item())
+        yield from _fields(path, name, value.item(), units)
+    elif isinstance(value, np.ndarray) and value.dtype == object:
+        for k, signal in enumerate(value.ravel(), 1):
+            yield from _signal(path, _text(signal, _NAMES) or f"{name}({k})", signal, units)
     elif isinstance(value, np.ndarray):
         yield from _columns(path, name, value)
+
+
+def _signal(path: Path, name: str, signal: Any, units: dict[str, str]) -> Named:
+    """Yields the columns of one structure of an array, which has the name of the signal."""
+    unit = _text(signal, _UNITS)
+    for field in getattr(signal, "_fieldnames", ()):
+        column = name if field in _VALUES else f"{name}.{field}"
+        if unit and field in _VALUES:
+            units[column] = unit
+        yield from _fields(path, column, getattr(signal, field), units)
+
+
+def _text(structure: Any, fields: tuple[str, ...]) -> str:
+    """Returns the first of these fields of a structure that has a text; empty without one."""
+    for field in fields:
+        value = getattr(structure, field, None)
+        if isinstance(value, np.ndarray) and value.dtype.kind == "U" and value.size == 1:
+            return str(value.item()).strip()
+    return ""
 
 
 def read_hdf5(path: Path) -> LogInMemory:
     """Reads an HDF5 file, or a MAT file of version 7.3. Raises LogError as read_mat does."""
     import h5py
+
+    units: dict[str, str] = {}
 
     def walk(group: h5py.Group, above: str, depth: int = 0) -> Named:
         if depth > _DEEPEST:
@@ -163,15 +197,26 @@ def read_hdf5(path: Path) -> LogInMemory:
                 for field in item.dtype.names:
                     yield from _columns(path, f"{above}{name}.{field}", item[field])
             else:
+                units[f"{above}{name}"] = _attribute(item, _UNITS)
                 yield from _columns(path, f"{above}{name}", item)
 
     try:
         with h5py.File(path, "r") as file:
-            return _log(path, walk(file, ""))
+            return _log(path, walk(file, ""), units)
     except LogError:
         raise
     except (OSError, RuntimeError, KeyError, ValueError, TypeError) as error:
         raise LogError(f"{path}: incomplete HDF5 file ({error}); copy it again") from error
+
+
+def _attribute(item: Any, names: tuple[str, ...]) -> str:
+    """Returns the first of these attributes of a data set that is a text; empty without one."""
+    for name in names:
+        value = item.attrs.get(name, "")
+        text = value.decode("utf-8", "replace") if isinstance(value, bytes) else value
+        if isinstance(text, str) and text:
+            return text
+    return ""
 
 
 def _elsewhere(path: Path, name: str, file: str) -> LogError:
@@ -197,13 +242,23 @@ def _columns(path: Path, name: str, array: Any) -> Named:
         yield f"{name}[{j}]", column
 
 
-def _log(path: Path, columns: Named) -> LogInMemory:
+def _distinct(name: str, others: Collection[str]) -> str:
+    """Returns a name, with a number if other columns have it: signals may have one name."""
+    new, count = name, 2
+    while new in others:
+        new, count = f"{name} ({count})", count + 1
+    return new
+
+
+def _log(path: Path, columns: Named, units: dict[str, str]) -> LogInMemory:
     arrays, size = {}, 0
     for name, values in columns:
-        arrays[name] = values
+        arrays[_distinct(name, arrays)] = values
         size += values.nbytes
         check_columns(path, len(arrays))
         check_bytes(path, size)
     if not arrays:
         raise LogError(f"{path}: expected a vector or matrix of numbers, found none")
-    return LogInMemory(path, arrays)
+    log = LogInMemory(path, arrays)
+    log.units |= {name: unit for name, unit in units.items() if unit and name in arrays}
+    return log
