@@ -176,3 +176,9 @@ def test_a_torque_far_from_zero_has_an_offset_to_check(m: Motion) -> None:
     found = only({"t_s": T * np.arange(N), "theta": m.theta, "q": m.q, "adc_i": counts})
     assert abs(found.ports["tau"].zero - 2043) < 100
     assert found.ports["tau"].notes["zero"].startswith("CHECK")
+
+
+def test_a_name_that_only_suggests_a_side_leaves_it_to_the_motion(m: Motion) -> None:
+    columns = {"t_s": T * np.arange(N), "as5048": m.q, "angle": m.theta, "tau": m.tau}
+    ports = only(columns).ports
+    assert (ports["theta"].column, ports["q"].column) == ("angle", "as5048")

@@ -9,6 +9,7 @@ import numpy as np
 from sigmahat.guess.columns import Column
 from sigmahat.guess.relations import derivatives, is_copy, line
 from sigmahat.guess.relations import scale_of_derivative as scale_of
+from sigmahat.guess.words import Meaning
 from sigmahat.motor.hypotheses.drive import Drive, drive
 
 # Points of a column as a candidate for a port.
@@ -94,10 +95,17 @@ def _swapped(ports: Mapping[str, Role]) -> dict[str, Role]:
     if not {"theta", "q", "tau"} <= ports.keys():
         return {}
     theta, q = ports["theta"].column, ports["q"].column
-    if _points(theta, "motor") + _points(q, "link") > _points(q, "motor") + _points(theta, "link"):
+    said = _points(theta, "motor") + _points(q, "link")
+    other = _points(q, "motor") + _points(theta, "link")
+    if said > other and not _only_one_suggests(theta.meaning, q.meaning):
         return {}
     why = "explains the torque better as the"
     return {**ports, "theta": Role(q, f"{why} motor"), "q": Role(theta, f"{why} link")}
+
+
+def _only_one_suggests(theta: Meaning, q: Meaning) -> bool:
+    """Returns whether all that names say of the sides is that one of them suggests a side."""
+    return not (theta.side or q.side) and not (theta.suggested and q.suggested)
 
 
 def _drive(ports: Mapping[str, Role]) -> Drive:

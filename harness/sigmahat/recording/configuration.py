@@ -31,7 +31,8 @@ FILL_IN = "FILL IN"
 _ANGLE_UNIT = "rad, mrad, deg or turn"
 QUESTIONS = {
     **{("unit", port): _ANGLE_UNIT for port in ("theta", "q", "phi")},
-    ("unit", "tau"): "N.m, mN.m or kN.m; A or mA if it is a current, with torque_constant",
+    ("unit", "tau"): "N.m, mN.m or kN.m; A or mA if it is a current, with torque_constant; or "
+    "scale in place of unit [N.m]",
     ("unit", "tau_e_sensor"): "N.m, mN.m or kN.m; or scale in place of unit [N.m]",
     ("gear_ratio", "tau"): "1 if tau is the torque of the motor, before the gear; the ratio of the "
     "gear if it is the torque of the joint, after the gear",

@@ -126,7 +126,9 @@ def read_mat(path: Path) -> LogInMemory:
         raise LogError(f"{path}: damaged MAT file ({error}); save it again") from error
     units: dict[str, str] = {}
     own = (
-        _fields(path, *each, units) for each in variables.items() if not each[0].startswith("__")
+        _fields(path, name, value, units)
+        for name, value in variables.items()
+        if not name.startswith("__")
     )
     return _log(path, chain.from_iterable(own), units)
 
@@ -251,7 +253,8 @@ def _distinct(name: str, others: Collection[str]) -> str:
 
 
 def _log(path: Path, columns: Named, units: dict[str, str]) -> LogInMemory:
-    arrays, size = {}, 0
+    arrays: dict[str, NDArray[np.generic]] = {}
+    size = 0
     for name, values in columns:
         arrays[_distinct(name, arrays)] = values
         size += values.nbytes
