@@ -3,6 +3,8 @@
 from pathlib import Path
 
 import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 
 from checked_logs import log_by_hand
@@ -11,6 +13,7 @@ from sigmahat.guess.columns import Facts, interval, look_at, read_columns
 from sigmahat.guess.guess import JointGuess, guess
 from sigmahat.guess.words import meaning
 from sigmahat.recording.log import LogInMemory
+from sigmahat.recording.readers.formats import open_log
 
 N = 7000
 
@@ -53,6 +56,9 @@ N = 7000
         ("电机位置(度)", "position", "motor", "deg"),
         ("连杆位置(度)", "position", "link", "deg"),
         ("电机电流(A)", "current", "motor", "A"),
+        ("qpos_0", "position", None, None),
+        ("qvel_0", "velocity", None, None),
+        ("actuator_force_0", "torque", "motor", None),
     ],
 )
 def test_names(name: str, quantity: str | None, side: str | None, unit: str | None) -> None:
@@ -182,3 +188,34 @@ def test_a_name_that_only_suggests_a_side_leaves_it_to_the_motion(m: Motion) -> 
     columns = {"t_s": T * np.arange(N), "as5048": m.q, "angle": m.theta, "tau": m.tau}
     ports = only(columns).ports
     assert (ports["theta"].column, ports["q"].column) == ("angle", "as5048")
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["axis0.controller.input_pos", "ctrl_0", "joint_control_output_2", "t_ff", "v_des", "p_des"],
+)
+def test_a_command_is_no_measurement(name: str) -> None:
+    assert meaning(name).reference
+
+
+def test_the_signed_one_of_two_currents_is_the_torque(tmp_path: Path) -> None:
+    motion = joint(has_lever=False)
+    columns = {
+        "t": motion.t,
+        "motor_deg": np.degrees(motion.theta),
+        "link_deg": np.degrees(motion.q),
+        "current_motor": np.abs(motion.tau),
+        "q_axis_current": motion.tau,
+    }
+    (found,) = guess(read_columns(LogInMemory(tmp_path / "log.csv", columns))).values()
+    assert found.ports["tau"].column == "q_axis_current"
+
+
+def test_points_in_time_are_the_time_whatever_their_name(tmp_path: Path) -> None:
+    t = np.datetime64("2026-03-12T10:00:00", "us") + 4000 * np.arange(100)
+    times = pa.array(t.astype("datetime64[us]"))
+    table = {"motor_deg": np.sin(np.arange(100)), "__index_level_0__": times}
+    pq.write_table(pa.table(table), tmp_path / "log.parquet")
+    columns = read_columns(open_log(tmp_path / "log.parquet"))
+    assert columns.signals[0].clock == "__index_level_0__"
+    assert columns.signals[0].samples.interval == pytest.approx(0.004)

@@ -1,5 +1,6 @@
 """Logs in ROS 2 bags, which are written and read without a ROS installation."""
 
+import struct
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ from rosbags.typesys import Stores, get_typestore
 
 from command_line import Shell
 from recorded_logs import STORED, read_estimate
+from sigmahat.recording.log import LogError
 from sigmahat.recording.readers.formats import open_log
 
 T = 1e-3
@@ -97,3 +99,11 @@ def test_one_mcap_file_whole_and_cut_in_the_middle(shell: Shell) -> None:
     assert 'time = "/drive/torque.time"' in text
     file.write_bytes(file.read_bytes()[: file.stat().st_size // 2])
     assert "incomplete ROS 2 bag" in shell.refused("estimate bag")
+
+
+def test_an_mcap_file_of_another_system_is_named(tmp_path: Path) -> None:
+    header = struct.pack("<I", 0) + struct.pack("<I", 0)  # empty profile and library
+    begin = b"\x89MCAP0\r\n" + struct.pack("<BQ", 1, len(header)) + header
+    (tmp_path / "log.mcap").write_bytes(begin)
+    with pytest.raises(LogError, match=r"not of ROS 2 \(its profile is ''"):
+        open_log(tmp_path / "log.mcap")

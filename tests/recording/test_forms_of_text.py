@@ -40,6 +40,12 @@ FORMS = {
     ),
     "dates of a terminal before each line": "".join(
         f"[2026-03-12 12:03:44] {line}\n" for line in (HEAD + rows()).split()
+    "statistics below the rows": f"{HEAD}{rows()}\nMean,1,2,3\nStd Dev,1,2,3\nEnd of file, Kim\n",
+    "a mark at the end": f"{HEAD}{rows()}EOF\n",
+    "a measurement file of LabVIEW": (
+        "LabVIEW Measurement\t\nSeparator\tTab\n***End_of_Header***\t\n\t\n"
+        "Channels\t3\t\t\t\nSamples\t30\t30\t30\t\nDate\t2026/03/12\t2026/03/12\t2026/03/12\t\n"
+        f"***End_of_Header***\t\t\t\t\n{chr(9).join(NAMES)}\tComment\n{rows(chr(9), ',')}"
     ),
     "a column without a name": "," + HEAD + "".join(f"7,{line}\n" for line in rows().split()),
 }
@@ -170,3 +176,29 @@ def test_a_document_of_json_is_refused_with_the_reason(tmp_path: Path) -> None:
     (tmp_path / "log.json").write_text('[\n {"t": 0,\n "x": 1},\n {"t": 1, "x": 2}]\n')
     with pytest.raises(LogError, match="expected one JSON object in each line"):
         open_log(tmp_path / "log.json")
+def test_lines_below_the_rows_are_said(tmp_path: Path) -> None:
+    (tmp_path / "log.csv").write_text(f"{HEAD}{rows()}\nMean,1,2,3\n")
+    notes = [note.in_words for note in open_log(tmp_path / "log.csv").notes]
+    assert notes == ["2 lines below the rows, from line 32 on, left out: no rows"]
+
+
+def test_a_row_that_was_cut_off_is_no_footer(tmp_path: Path) -> None:
+    (tmp_path / "log.csv").write_text(f"{HEAD}{rows()}0.03,0.1")
+    notes = [note.in_words for note in open_log(tmp_path / "log.csv").notes]
+    assert notes == ["a row with 2 of 4 values was left out: the file may have been cut off"]
+
+
+@pytest.mark.parametrize("text", ["-", "#N/A", "NULL", "1.#QNAN", "#DIV/0!", "None"])
+def test_a_text_in_place_of_a_number_is_a_missing_sample(text: str, tmp_path: Path) -> None:
+    (tmp_path / "log.csv").write_text(f"{HEAD}{rows()}0.03,{text},1,2\n")
+    motor = open_log(tmp_path / "log.csv").read("motor")
+    assert len(motor) == 31
+    assert np.flatnonzero(np.isnan(motor)).tolist() == [30]
+
+
+@pytest.mark.parametrize("cell", ['"[0.1, 0.0]"', "[-0.1 0.]"])
+def test_lists_in_cells_are_named(cell: str, tmp_path: Path) -> None:
+    lines = "".join(f"{k},{0.01 * k},{cell},{cell},{cell}\n" for k in range(9))
+    (tmp_path / "log.csv").write_text(f",{HEAD}{lines}")
+    with pytest.raises(LogError, match=r"line 2 has a list in a cell \('\[-?0.1"):
+        open_log(tmp_path / "log.csv")

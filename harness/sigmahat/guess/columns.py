@@ -287,6 +287,8 @@ def read_columns(log: Log) -> Columns:
     values: dict[str, Array] = {}
     with_units = {name: f"{name} [{unit}]" for name, unit in log.units.items()}
     meanings = {name: meaning(with_units.get(name, name)) for name in log.columns}
+    for name in log.dates:  # read in s, whatever their name says
+        meanings[name] = replace(meanings[name], quantity="time", unit="s")
     for name in log.columns:
         facts[name], values[name] = look_at(log, name, meanings[name].quantity)
         if meanings[name].side == "setting":  # two settings make a set-point

@@ -15,6 +15,7 @@ from sigmahat.motor.hypotheses.drive import Drive, drive
 # Points of a column as a candidate for a port.
 _SAID, _SUGGESTED, _QUANTITY = 4.0, 2.0, 1.0
 _REFERENCE, _COMPUTED, _COPY, _APART = -6.0, -3.0, -5.0, -2.0
+_MAGNITUDE = -5.0
 _OF_PORTS, _NO_PORT = ("position", "deformation", "torque", "current"), -8.0
 _CLOSE, _ALIKE, _UNLIKE = 0.98, 0.9, 0.7
 """Correlations of two columns that are sure, likely, and unlikely positions of one joint."""
@@ -225,6 +226,8 @@ def _is_motor(column: Column) -> bool:
 def _torque_points(column: Column) -> float:
     # A torque is better than a current, which needs a torque constant.
     points = _named(column) + _QUANTITY * (column.meaning.quantity == "torque")
+    # The magnitude of a current or torque has no sign, and a joint that moves both ways needs one.
+    points += _MAGNITUDE * (column.facts.low >= 0)
     return points + 0.5 * _REFERENCE * column.meaning.reference
 
 
@@ -237,6 +240,7 @@ def _silent_torque(
         (drive(theta, q, each.window).explained, each)
         for each in columns
         if each.meaning.quantity is None
+        and not each.meaning.reference  # a command, such as v_des, is not what the motor did
         and abs(line(theta, each.window).correlation) < _SAME
         and all(scale_of(angle, each.window, T) is None for angle in (theta, q))
     ]

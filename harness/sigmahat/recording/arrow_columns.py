@@ -10,6 +10,13 @@ from sigmahat.recording.log import EXACT, Array, LogError
 
 _NO_TEXT = r"^\s*([+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?(?i:nan|inf|infinity))?\s*$"
 """Pattern of an empty cell, or of a number in the notation of Python."""
+MISSING = (
+    *("", "-", "--", "---", "NA", "N/A", "n/a", "n.a.", "#N/A", "#NA", "#N/A N/A", "<NA>"),
+    *("NULL", "null", "None", "none", "NaN", "nan", "-NaN", "-nan", "missing", "?"),
+    *("1.#QNAN", "-1.#QNAN", "1.#IND", "-1.#IND", "1.#INF", "-1.#INF"),
+    *("#VALUE!", "#DIV/0!", "#REF!", "#NUM!", "#NAME?", "#NULL!"),
+)
+"""Texts that programs write in place of a number that they do not have."""
 _SHOWN = 100  # characters of a cell that an error message shows
 _PER_SECOND = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}  # units of timestamps
 
@@ -41,7 +48,9 @@ def numbers(path: Path, name: str, column: pa.ChunkedArray) -> Array:
 
 def first_text(column: pa.ChunkedArray) -> tuple[int, str] | None:
     """Finds the first cell that is no number: row, from 1 on, and text; None if there is none."""
-    is_text = pa.compute.invert(pa.compute.match_substring_regex(column, _NO_TEXT))
+    is_number = pa.compute.match_substring_regex(column, _NO_TEXT)
+    is_missing = pa.compute.is_in(column, value_set=pa.array(MISSING, column.type))
+    is_text = pa.compute.invert(pa.compute.or_(is_number, is_missing))
     row = pa.compute.index(is_text, True).as_py()
     return None if row < 0 else (row + 1, column[row].as_py()[:_SHOWN])
 

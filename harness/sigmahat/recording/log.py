@@ -27,6 +27,7 @@ class Log(ABC):
         self.path = path  #: The file.
         self.columns = columns  #: Number of samples of each column.
         self.units: dict[str, str] = {}  #: Of columns whose unit the file has beside the name.
+        self.dates: set[str] = set()  #: Columns that the file stores as points in time.
         self.notes: list[RecordingNote] = []  #: On reading the file.
 
     def read(self, name: str) -> Array:

@@ -102,6 +102,19 @@ class RepeatedName(Note):
 
 
 @dataclass(frozen=True, kw_only=True)
+class LinesBelowTable(Note):
+    """Lines of text below the rows, such as statistics of a test rig, were left out."""
+
+    kind: Literal["lines_below_table"] = "lines_below_table"
+    line: int  # the first of these lines in the file, from 1 on
+    lines: int
+
+    @property
+    def in_words(self) -> str:
+        return f"{_lines(self.lines)} below the rows, from line {self.line} on, left out: no rows"
+
+
+@dataclass(frozen=True, kw_only=True)
 class NamesAgain(Note):
     """The names of the columns stand between the rows: several recordings are in one file."""
 
@@ -482,7 +495,7 @@ class FirstPart(Note):
 
 
 RecordingNote = Annotated[
-    Encoding | RowOfUnits | LinesAboveTable | CommentsLeftOut | NamesAgain
+    Encoding | RowOfUnits | LinesAboveTable | LinesBelowTable | CommentsLeftOut | NamesAgain
     | PrefixLeftOut | ThousandsSeparated | RepeatedName | ShortRow
     | Rows | NoTimeColumn | RepeatedTimes | MissingTimes | ClockStartedAgain | ClockSetBack
     | NoSignal | PlaceholderLeftOut | HeldLeftOut | CounterReturned

@@ -6,6 +6,7 @@ topic has a column of times, such as "/joint_states.time", in seconds since the 
 Times are from the headers of the messages; without headers, times of the recording are used.
 """
 
+import struct
 from collections import defaultdict
 from collections.abc import Iterator
 from pathlib import Path
@@ -15,9 +16,20 @@ import numpy as np
 
 from sigmahat.recording.log import LogError, LogInMemory
 
+_MAGIC = 8  # bytes at the beginning of an MCAP file
+_RECORD = struct.Struct("<BQI")  # opcode and length of a record, length of its first text
+_HEADER = 1  # opcode of the first record
+_LONGEST_PROFILE = 1000  # bytes
+
 
 def read_bag(path: Path) -> LogInMemory:
     """Reads a ROS 2 bag. Raises LogError for a bag that is damaged or contains no numbers."""
+    profile = _profile(path)
+    if profile not in ("ros2", None):
+        raise LogError(
+            f"{path}: the messages of this MCAP file are not of ROS 2 (its profile is {profile!r}, "
+            "expected 'ros2'); save them as a CSV file, one column for each number"
+        )
     from rosbags.highlevel import AnyReader, AnyReaderError
     from rosbags.typesys import Stores, get_typestore
 
@@ -49,6 +61,24 @@ def read_bag(path: Path) -> LogInMemory:
                 column.extend([np.nan] * (len(times) - len(column)))
                 arrays[name] = np.array(column)
     return LogInMemory(path, arrays)
+
+
+def _profile(path: Path) -> str | None:
+    """Returns the profile in the first record of an MCAP file; None for any other file.
+
+    A record has an opcode, its length, and its fields; the first field of the header is the profile
+    (https://mcap.dev/spec#header-op0x01).
+    """
+    if path.is_dir():
+        return None
+    with path.open("rb") as file:
+        begin = file.read(_MAGIC + _RECORD.size)
+        if len(begin) < _MAGIC + _RECORD.size or not begin.startswith(b"\x89MCAP"):
+            return None
+        opcode, _, length = _RECORD.unpack_from(begin, _MAGIC)
+        if opcode != _HEADER or length > _LONGEST_PROFILE:
+            return None
+        return file.read(length).decode("utf-8", errors="replace")
 
 
 def _stamp(message: Any) -> int | None:

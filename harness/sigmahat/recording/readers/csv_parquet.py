@@ -12,6 +12,7 @@ import pyarrow.csv
 import pyarrow.parquet
 
 from sigmahat.recording.arrow_columns import (
+    MISSING,
     first_text,
     fits_float64,
     holds_text,
@@ -46,6 +47,7 @@ class ParquetLog(Log):
         check_numbers(path, metadata.num_rows)
         self._texts = {field.name for field in schema if _is_text(field.type)}
         super().__init__(path, dict.fromkeys(flat, metadata.num_rows))
+        self.dates |= {field.name for field in schema if pa.types.is_timestamp(field.type)}
 
     def _read(self, name: str) -> Array:
         if name in self._texts:
@@ -207,7 +209,9 @@ class CsvLog(Log):
         """Opens a reader of all columns; the first block determines types that are not given."""
         self._cut.clear()  # the text is parsed more than once
         self._wrong = None
-        options = pa.csv.ConvertOptions(column_types=types, decimal_point=self.dialect.decimal)
+        options = pa.csv.ConvertOptions(
+            column_types=types, decimal_point=self.dialect.decimal, null_values=MISSING
+        )
         read = pa.csv.ReadOptions(
             use_threads=False,
             block_size=_BLOCK,
@@ -221,7 +225,7 @@ class CsvLog(Log):
         """Parses a text column of the Parquet copy; the type fits all values of the column."""
         text = pa.BufferOutputStream()
         pa.csv.write_csv(copy.read([name], use_threads=False), text)
-        options = pa.csv.ConvertOptions(decimal_point=self.dialect.decimal)
+        options = pa.csv.ConvertOptions(decimal_point=self.dialect.decimal, null_values=MISSING)
         return pa.csv.read_csv(pa.BufferReader(text.getvalue()), convert_options=options).column(0)
 
 

@@ -31,6 +31,9 @@ _NO_DECIMAL_POINT = re.compile(
     r"(?<![\d.,])[1-9]\d{0,2}(?:\.\d{3})+(?![\d.])|\d{1,2}\.\d{1,2}\.\d{2,4}|:\d\d\.\d+"
 )
 """Points in 1.234 of 1.234,56, in a date and in a time of day."""
+_END_OF_HEAD = "***End_of_Header***"  # in a measurement file of LabVIEW
+_LIST = re.compile(r"[\[(]\s*[-+]?[\d.]+(?:e[-+]?\d+)?[,\s][^\])]*[\])]")
+"""A list or an array of numbers that was printed: "[0.12, 0.0]" or "[0.12 0.  ]"."""
 _DELIMITERS = ("\t", ";", ",")
 SPACES = " "  # delimiter of a table whose columns are aligned with any number of spaces
 _ALIKE = 3  # lines with equally many values that show the delimiter
@@ -80,7 +83,8 @@ class _Table:
         self._path, self._lines, self._encoding = path, lines, encoding
         self._notes: list[RecordingNote] = []
         forced = _SEPARATOR.fullmatch(lines[0].strip()) if lines else None
-        begin = 1 if forced else 0
+        ends = [i for i, line in enumerate(lines, 1) if line.startswith(_END_OF_HEAD)]
+        begin = max([1 if forced else 0, *ends])
         self._texts = [
             i for i in range(begin, len(lines)) if lines[i].strip() and not _COMMENT.match(lines[i])
         ]
@@ -98,6 +102,8 @@ class _Table:
         count = len(self._cells(row))
         while len(names) > count and not names[-1]:
             names.pop()  # a delimiter ends the names, but not the rows
+        if names[count:] == ["Comment"]:
+            names.pop()  # LabVIEW names a column of comments, which the rows do not have
         if len(names) < count and not any(self._cells(row)[len(names) :]):
             names += [""] * (count - len(names))  # a delimiter ends the rows
         if len(names) != count:
@@ -131,7 +137,7 @@ class _Table:
         for place in range(len(self._texts)):
             lines = [self._lines[i] for i in self._texts[place : place + _ALIKE]]
             for delimiter in (*_DELIMITERS, SPACES):
-                rows = [_split(line, delimiter) for line in lines]
+                rows = [split_cells(line, delimiter) for line in lines]
                 count = len(rows[0])
                 if count > 1 and all(len(row) == count and _is_row(row) for row in rows):
                     return delimiter
@@ -148,7 +154,7 @@ class _Table:
         return None
 
     def _cells(self, i: int) -> list[str]:
-        return _split(self._lines[i], self._delimiter)
+        return split_cells(self._lines[i], self._delimiter)
 
     def _names(self, row: int) -> tuple[int, list[str]]:
         """The line with the names of the columns, above a row, and the names."""
@@ -160,7 +166,7 @@ class _Table:
                 return i, cells
         comments = [i for i in range(row) if _COMMENT.match(self._lines[i])]
         for i in reversed(comments):
-            names = _split(_COMMENT.sub("", self._lines[i], count=1), self._delimiter)
+            names = split_cells(_COMMENT.sub("", self._lines[i], count=1), self._delimiter)
             if len(names) == count and not _is_row(names):
                 return i, names
         if above:
@@ -169,7 +175,8 @@ class _Table:
                 raise self._no_names(i)
             return i, self._cells(i)
         raise LogError(
-            f"{self._path}: line {row + 1} has numbers, expected the names of the columns"
+            f"{self._path}: line {row + 1} has numbers, expected the names of the columns; "
+            "add a line of names above it"
         )
 
     def _with_units(self, names: list[str], names_line: int, row: int) -> list[str]:
@@ -204,6 +211,13 @@ class _Table:
             self._notes.append(LinesAboveTable(lines=len(skipped)))
 
     def _no_names(self, i: int) -> LogError:
+        for k in self._texts:
+            found = _LIST.search(self._lines[k])
+            if found:
+                return LogError(
+                    f"{self._path}: line {k + 1} has a list in a cell ({found[0][:_SHOWN]!r}), "
+                    "expected numbers; save each element of the lists as a column of its own"
+                )
         return LogError(
             f"{self._path}: line {i + 1} is {self._lines[i][:_SHOWN]!r}, expected names of columns "
             "that commas, semicolons or tabs separate"
@@ -211,14 +225,15 @@ class _Table:
 
     def _no_rows(self) -> LogError:
         first = self._texts[0]
-        if self._delimiter not in self._lines[first]:
+        has_list = any(_LIST.search(self._lines[i]) for i in self._texts)
+        if has_list or self._delimiter not in self._lines[first]:
             return self._no_names(first)
         return LogError(
             f"{self._path}: expected rows below the column names, found none; record it again"
         )
 
 
-def _split(line: str, delimiter: str) -> list[str]:
+def split_cells(line: str, delimiter: str) -> list[str]:
     cells = line.split() if delimiter == SPACES else line.split(delimiter)
     if '"' in line and delimiter != SPACES:  # a delimiter within quotes belongs to the cell
         with suppress(csv.Error):  # a cell that is longer than csv reads
@@ -236,11 +251,11 @@ def _without_empty_end(cells: Sequence[str]) -> Sequence[str]:
 def _is_row(cells: Sequence[str]) -> bool:
     """Whether most cells that are not empty may be numbers or dates, as in no line of names."""
     filled = [cell for cell in cells if cell]
-    values = sum(_may_be_value(cell) for cell in filled)
+    values = sum(may_be_value(cell) for cell in filled)
     return bool(filled) and 2 * values >= len(filled)
 
 
-def _may_be_value(cell: str) -> bool:
+def may_be_value(cell: str) -> bool:
     """Whether a cell may be a number, a date or a missing value instead of a name or a unit.
 
     A date has more digits than letters, unlike a name such as "0x6064:00 Position" or "1st motor".

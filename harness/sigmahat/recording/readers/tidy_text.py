@@ -1,13 +1,14 @@
 """Makes the rows of a text file ready for a reader of CSV, with notes on what was done.
 
-Between the rows there may be comments, or the names of the columns again where a device appended a
-recording. A terminal puts its own time before each line, a spreadsheet separates thousands. A file
-without any of these is read as it is.
+Below the rows there may be statistics or an end mark; between them comments, or the names of the
+columns again where a device appended a recording. A terminal puts its own time before each line, a
+spreadsheet separates thousands. A file without any of these is read as it is.
 """
 
 import re
 import weakref
 from collections.abc import Sequence
+from itertools import islice
 from mmap import ACCESS_READ, mmap
 from pathlib import Path
 from tempfile import TemporaryFile
@@ -15,12 +16,14 @@ from typing import IO
 
 from sigmahat.recording.notes import (
     CommentsLeftOut,
+    LinesBelowTable,
     NamesAgain,
     PrefixLeftOut,
     RecordingNote,
     ThousandsSeparated,
 )
 from sigmahat.recording.readers.dialect import PREFIX, SPACES, Dialect
+from sigmahat.recording.readers.footer import footer_lines
 
 _COMMENTS = (b"#", b"%", b"//")  # signs at the beginning of a comment
 _PREFIX = re.compile(PREFIX.pattern.encode())
@@ -38,9 +41,12 @@ class TidyText:
         self._comments = 0  # lines
         self._again: list[int] = []  # lines in the file with the names of the columns
         self._example = b""  # of a number with separators of thousands
+        self._footer = footer_lines(path, dialect)
+        self._end = 0  # line at which the footer begins, from 1 on; 0 without one
         self._copy: IO[bytes] | None = None
         with path.open("rb") as file, mmap(file.fileno(), 0, access=ACCESS_READ) as text:
-            is_tidy = not dialect.prefix and not self._is_aligned and not self._is_mixed(text)
+            is_table = not dialect.prefix and not self._is_aligned and not self._footer
+            is_tidy = is_table and not self._is_mixed(text)
         if not is_tidy:
             self._copy = self._copied()
 
@@ -63,6 +69,8 @@ class TidyText:
             notes.append(ThousandsSeparated(example=self._example.decode("ascii")))
         if self._comments:
             notes.append(CommentsLeftOut(lines=self._comments))
+        if self._footer:
+            notes.append(LinesBelowTable(line=self._end, lines=self._footer))
         return notes
 
     @property
@@ -82,7 +90,12 @@ class TidyText:
         copy = TemporaryFile(prefix="sigmahat-")  # noqa: SIM115
         weakref.finalize(self, copy.close)
         with self._path.open("rb") as file:
-            for number, line in enumerate(file):
+            if self._footer:
+                count = sum(1 for _ in file)
+                self._end = count - self._footer + 1
+                file.seek(0)
+            rows = islice(file, self._end - 1) if self._footer else file
+            for number, line in enumerate(rows):
                 if number < self._dialect.head:
                     copy.write(line)
                 else:
