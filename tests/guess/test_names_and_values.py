@@ -211,6 +211,18 @@ def test_the_signed_one_of_two_currents_is_the_torque(tmp_path: Path) -> None:
     assert found.ports["tau"].column == "q_axis_current"
 
 
+def test_a_current_without_a_sign_is_named(tmp_path: Path) -> None:
+    motion = joint(has_lever=False)
+    columns = {
+        "t": motion.t,
+        "motor_deg": np.degrees(motion.theta),
+        "link_deg": np.degrees(motion.q),
+        "motor_current_A": np.abs(motion.tau),
+    }
+    (found,) = guess(read_columns(LogInMemory(tmp_path / "log.csv", columns))).values()
+    assert "never negative" in found.ports["tau"].notes["sign"]
+
+
 def test_points_in_time_are_the_time_whatever_their_name(tmp_path: Path) -> None:
     t = np.datetime64("2026-03-12T10:00:00", "us") + 4000 * np.arange(100)
     times = pa.array(t.astype("datetime64[us]"))

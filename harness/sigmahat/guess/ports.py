@@ -23,6 +23,7 @@ _ANGLES = ("theta", "q", "phi")
 _AS_OTHER = "CHECK: as the other position, with the gear that the motor moves farther by"
 _OF_ROS = "of a JointState of ROS (REP 103)"
 _OFFSET = 0.1  # ratio of the least torque to the range beyond which the column has an offset
+_NEAR_0 = 0.02  # ratio of the least to the largest torque of what may be a magnitude
 _SAME_TURN = 0.02  # as _AS_FAR, where a gear may explain the ratio as well
 _AS_FAR = 0.15  # largest relative difference between the motions of motor and link after the gear
 _APART = 4.0  # largest mean of the deformation with equal zeros, in standard deviations
@@ -324,6 +325,11 @@ def _set_torque(ports: Mapping[str, PortGuess], roles: Roles) -> None:
     elif roles.drive.sign == 0:
         notes["sign"] = (
             "CHECK: the log does not show it; 1 if a positive torque increases theta, else -1"
+        )
+    if 0 <= facts.low < _NEAR_0 * facts.high:
+        notes["sign"] = (
+            "CHECK: the column is never negative. If it is a magnitude, without the sign of the "
+            "torque, no stiffness follows from it: choose or record a column with a sign"
         )
     _set_side(port, column, ports.get("theta"))
 
