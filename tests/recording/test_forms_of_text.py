@@ -40,6 +40,7 @@ FORMS = {
     ),
     "dates of a terminal before each line": "".join(
         f"[2026-03-12 12:03:44] {line}\n" for line in (HEAD + rows()).split()
+    ),
     "statistics below the rows": f"{HEAD}{rows()}\nMean,1,2,3\nStd Dev,1,2,3\nEnd of file, Kim\n",
     "a mark at the end": f"{HEAD}{rows()}EOF\n",
     "a measurement file of LabVIEW": (
@@ -176,6 +177,8 @@ def test_a_document_of_json_is_refused_with_the_reason(tmp_path: Path) -> None:
     (tmp_path / "log.json").write_text('[\n {"t": 0,\n "x": 1},\n {"t": 1, "x": 2}]\n')
     with pytest.raises(LogError, match="expected one JSON object in each line"):
         open_log(tmp_path / "log.json")
+
+
 def test_lines_below_the_rows_are_said(tmp_path: Path) -> None:
     (tmp_path / "log.csv").write_text(f"{HEAD}{rows()}\nMean,1,2,3\n")
     notes = [note.in_words for note in open_log(tmp_path / "log.csv").notes]
