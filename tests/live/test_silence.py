@@ -146,6 +146,19 @@ def test_a_field_that_disappears_is_named_once(how: str, stream: Callable[..., S
     assert robot.last().in_words == "confident"
 
 
+def test_the_end_of_a_stream_without_a_field_is_not_confident(
+    stream: Callable[..., Stream],
+) -> None:
+    robot = stream()
+    sent = messages(3000)
+    for each in sent[2000:]:
+        del each[LINK]
+    robot.send(sent, 0.0)
+    robot.close()
+    assert robot.last().in_words == "no data for 2 s"
+    assert robot.kinds == ["fields_missing"]
+
+
 def test_a_field_that_never_comes(stream: Callable[..., Stream]) -> None:
     robot = stream()
     sent = messages(1000)

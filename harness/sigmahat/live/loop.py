@@ -106,7 +106,7 @@ class Loop:
         self._tell(self._silence.passed(self._inbox.now()))
 
     def end(self) -> None:
-        self._tell(self._session.close())
+        self._tell(self._silence.rest(self._session.close(), self._inbox.now()))
 
     def _tell(self, news: Sequence[News]) -> None:
         if news:

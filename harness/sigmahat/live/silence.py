@@ -151,6 +151,15 @@ class Silence:
             told.append(each)
         return told
 
+    def rest(self, found: Sequence[News], now: float) -> list[News]:
+        """Returns the last news of a session, of which no tick of a silent joint is confident."""
+        told: list[News] = []
+        for each in found:
+            if isinstance(each, Estimated) and self._joints[each.joint].is_silent(now):
+                each = each.without_data(each.t, now - self._joints[each.joint].heard)
+            told.append(each)
+        return told
+
     def passed(self, now: float) -> list[News]:
         """Returns what is to be said because time has passed: silence, and its duration."""
         if now < self._check:
