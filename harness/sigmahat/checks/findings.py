@@ -52,6 +52,7 @@ class Kind(str, Enum):
     SPIKE = "single samples far off"
     PLACEHOLDER = "values in place of samples"
     HELD = "samples that repeat an earlier one"
+    FROZEN = "a position that stops changing"
     SATURATION = "saturation of the torque"
     NO_TORQUE = "torque that is only noise"
     NOISE = "prediction error and noise"

@@ -10,7 +10,7 @@ from sigmahat.motor.hypotheses.encoder import known_step, other_step
 from sigmahat.motor.hypotheses.positions import still
 from sigmahat.motor.log_view import LogView
 from sigmahat.motor.noise import is_only_noise
-from sigmahat.recording.column import RARE, restart, share_at_ends, spikes
+from sigmahat.recording.column import RARE, frozen_from, restart, share_at_ends, spikes
 from sigmahat.recording.configuration import Port
 from sigmahat.recording.counters import Unwrapping
 from sigmahat.recording.false_samples import false_samples
@@ -21,6 +21,7 @@ from sigmahat.recording.notes import CounterReturned, HeldLeftOut, PlaceholderLe
 def of_columns(view: LogView) -> Iterator[Finding]:
     """Finds what single columns show, and what the resampling found in them."""
     yield from _of_notes(view)
+    yield from _of_frozen(view)
     for name, port in view.configuration.ports.items():
         if port.value is not None:
             continue
@@ -70,6 +71,19 @@ def _of_notes(view: LogView) -> Iterator[Finding]:
             key = f"ports.{note.port}.column"
             share, row = note.share, note.row
             yield Finding(Kind.HELD, Severity.NOTE, key, share, "", about=note.port, row=row)
+
+
+def _of_frozen(view: LogView) -> Iterator[Finding]:
+    """Finds a position that stops changing before the other one does: a dead encoder."""
+    ports = view.configuration.ports
+    for name, other in (("q", "theta"), ("theta", "q")):
+        if not {name, other} <= ports.keys() or not (ports[name].column and ports[other].column):
+            continue
+        values = view.log.read(ports[name].column)
+        row = frozen_from(values, view.log.read(ports[other].column))
+        if row is not None:
+            key, share = f"ports.{name}.column", 1 - row / len(values)
+            yield Finding(Kind.FROZEN, Severity.NOTE, key, share, "", about=name, row=row + 1)
 
 
 def _of_jump(view: LogView, name: str, values: Array) -> Iterator[Finding]:

@@ -169,6 +169,8 @@ _SENTENCES: Mapping[Kind, str] = {
     Kind.HELD: "{percent} of the samples repeat the value before while the joint moves, first in "
     "row {row}: the sensor is slower than the log, or did not answer; they are left out. Record "
     "this column with times of its own, or leave these cells empty",
+    Kind.FROZEN: "{about} has one value from row {row} on ({percent} of the log), while the other "
+    "position moves on: its encoder died, or the link is blocked; use the rows before",
     Kind.SATURATION: "the torque stays at an end of its range for {percent} of the samples",
     Kind.NO_TORQUE: "the torque is only noise ({measured}): the motor is off, or the column is "
     "wrong. The stiffness then rests on motor.B, motor.D_theta and the Coulomb friction alone",

@@ -28,6 +28,8 @@ _SPIKE, _UNUSUAL, _ALONE = 0.1, 20.0, 5.0
 the encoder step, and to the distance between the neighbours."""
 _SMOOTH = 0.01  # least distance of a spike relative to the range, without an encoder step
 RARE = 0.01  # fraction of all samples; more spikes than this are the motion itself
+_FROZEN = 0.03  # least fraction of the rows in which a dead encoder keeps its value
+_MOVES_ON = 0.25  # least range of the other position there, relative to its whole range
 _FLAT = 3  # consecutive samples at an end of the range
 _FEW = 50  # with fewer distinct values, a signal is a series of steps
 
@@ -176,3 +178,22 @@ def share_at_ends(values: Array) -> float:
     tolerance = 1e-6 * float(np.ptp(values))
     at_end = (values >= values.max() - tolerance) | (values <= values.min() + tolerance)
     return float(np.mean(np.convolve(at_end, np.ones(_FLAT), "same") >= _FLAT))
+
+
+def frozen_from(values: Array, other: Array) -> int | None:
+    """Finds the row, from 0 on, from which a position has one value to the end of the log although
+    the other position moves on; None if there is none, or if the position never changes.
+
+    other  position of the motor or of the link, at the same times
+    """
+    if len(other) != len(values):
+        return None
+    changes = np.flatnonzero(np.diff(values) != 0)
+    if not len(changes):
+        return None
+    row = int(changes[-1]) + 1
+    rest = other[row:]
+    if len(rest) < _FROZEN * len(other):
+        return None
+    moves = np.nanmax(rest) - np.nanmin(rest) > _MOVES_ON * (np.nanmax(other) - np.nanmin(other))
+    return row if moves else None
