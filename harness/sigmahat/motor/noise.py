@@ -15,7 +15,7 @@ _WINDOWS = 40
 _ONLY_NOISE = 1.2  # largest ratio of signal variance to noise variance of a signal without motion
 _LOWEST = 5.0  # [Hz]
 _HIGHEST = 0.1  # highest bandwidth divided by the sampling frequency
-_MOST_REFLECTIONS = 16
+_MOST_REFLECTIONS = 40
 SETTLED = 8.0  # periods of the low pass after which a step response has decayed to 1e-15
 
 
