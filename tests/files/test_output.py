@@ -1,15 +1,23 @@
 """An output folder is written completely or not at all. SHA-256 digests of files and folders."""
 
 import hashlib
+import os
+import random
+import resource
 import shutil
+import stat
 import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
 
 from controllers import run
 from gate import need
-from sigmahat.files.output import created_folder, output_folder, sha256, write_whole
+from sigmahat.files.output import created_folder, output_folder, sha256, write_json, write_whole
+from sigmahat.files.tables import write_csv
+from sigmahat.plant_fmu import archive
 
 
 def test_folder_appears_filled_or_not_at_all(tmp_path: Path) -> None:
@@ -53,6 +61,65 @@ def test_a_file_is_replaced_at_once_or_not_changed(tmp_path: Path) -> None:
     with pytest.raises(OSError) as error:
         write_whole("", tmp_path / "missing" / "knee.toml")
     assert error.value.filename == str(tmp_path / "missing" / "knee.toml")
+
+
+@contextmanager
+def full_disk(free: int = 1000) -> Iterator[None]:
+    """Files take only this number of bytes, and further bytes are an error of the system."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (free, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+
+def archive_of(path: Path) -> None:
+    archive.write(path, {"random": bytes(random.Random(1).randbytes(5000))})
+
+
+def folder_of(path: Path) -> None:
+    with output_folder(path.parent) as folder:
+        (folder / "first").write_text("new")
+        (folder / path.name).write_text("x" * 5000)
+
+
+WRITERS: dict[str, Callable[[Path], object]] = {
+    "a text": lambda path: write_whole("x" * 5000, path),
+    "JSON": lambda path: write_json(["x" * 5000], path),
+    "CSV": lambda path: write_csv(path, ["x"], [["x" * 5000]]),
+    "an FMU": archive_of,
+    "a folder": folder_of,
+}
+
+
+@pytest.mark.parametrize("write", WRITERS.values(), ids=WRITERS)
+def test_a_full_disk_leaves_the_old_file_whole(
+    write: Callable[[Path], object], tmp_path: Path
+) -> None:
+    path = tmp_path / "knee"
+    path.write_text("earlier")
+    with full_disk(), pytest.raises(OSError):
+        write(path)
+    assert (path.read_text(), [*tmp_path.iterdir()]) == ("earlier", [path])
+    path.chmod(0o640)
+    write(path)
+    assert path.stat().st_size >= 5000 and stat.S_IMODE(path.stat().st_mode) == 0o640
+
+
+def test_the_bytes_are_on_the_disk_before_the_name(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path, seen = tmp_path / "knee", list[tuple[int, str]]()
+    path.write_text("earlier")
+
+    def synced(descriptor: int) -> None:
+        seen.append((os.fstat(descriptor).st_ino, path.read_text()))
+
+    monkeypatch.setattr(os, "fsync", synced)
+    write_whole("whole", path)
+    file, folder = path.stat().st_ino, tmp_path.stat().st_ino
+    assert seen == [(file, "earlier"), (folder, "whole")]
 
 
 def test_a_device_is_written_to(tmp_path: Path) -> None:

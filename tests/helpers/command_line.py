@@ -58,10 +58,11 @@ class Shell:
 
 @contextmanager
 def working_in(folder: Path) -> Iterator[None]:
-    """Commands run in a folder, and draw no figures, because figures take most of the time."""
+    """Commands run in a folder, and neither draw figures nor wait for the disk: both take long."""
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)
         patch.setattr("sigmahat.result.estimate._save_figure", lambda *_: None)
+        patch.setattr("os.fsync", lambda _: None)
         yield
 
 

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from sigmahat.checks.findings import Checked, Finding, Kind, Severity
 from sigmahat.motor.hypotheses.hypothesis import Setting
-from sigmahat.result.data_sheet import WORDS
+from sigmahat.result.sheet import WORDS
 
 TITLES = {
     Severity.WRONG: "checked, likely wrong in the configuration:",

@@ -31,7 +31,7 @@ from numpy.typing import NDArray
 from sigmahat.experiments.pool import Progress, run_all
 from sigmahat.experiments.scores import SETTLED, Score, score
 from sigmahat.files import toml_file
-from sigmahat.files.output import output_folder
+from sigmahat.files.output import output_folder, write_whole
 from sigmahat.files.tables import (
     aligned,
     name_and_unit,
@@ -124,7 +124,7 @@ def _make_and_write(make: Callable[[], LogWithTruth], folder: Path) -> Sequence[
     truth = {"t [s]": log.t, "stiffness [N.m/rad]": log.stiffness}
     write_csv(folder / f"{log.name}.{TRUTH}", list(truth), _rows(truth))
     text = _configuration(measured, log.parameters)
-    (folder / f"{log.name}.toml").write_text(text, encoding="utf-8")
+    write_whole(text, folder / f"{log.name}.toml")
     return log.name, log.kind, log.seed, log.judged_from
 
 

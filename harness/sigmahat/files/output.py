@@ -3,11 +3,15 @@
 import hashlib
 import json
 import math
-from collections.abc import Iterator, Mapping
+import os
+import stat
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
+
+_UNFINISHED = ".unfinished-"  # prefix of folders for files that are not complete
 
 
 @contextmanager
@@ -30,37 +34,63 @@ def created_folder(path: Path) -> Iterator[None]:
 def output_folder(path: Path) -> Iterator[Path]:
     """Yields a folder to write into. At the end, its files are moved to path together.
 
-    Creates path. After an exception, no file remains. Raises OSError if path cannot be
-    written to.
+    Creates path. After an exception, no file remains, and files of path are unchanged. Raises
+    OSError if path cannot be written to.
     """
-    with created_folder(path), TemporaryDirectory(prefix=".unfinished-", dir=path) as unfinished:
+    with created_folder(path), TemporaryDirectory(prefix=_UNFINISHED, dir=path) as unfinished:
         yield Path(unfinished)
-        for file in sorted(Path(unfinished).iterdir()):
-            file.replace(path / file.name)
+        _move(sorted(Path(unfinished).iterdir()), path)
 
 
-def write_whole(text: str, path: Path) -> None:
-    """Writes a file in UTF-8. After an interruption, the file is unchanged.
+@contextmanager
+def whole_file(path: Path) -> Iterator[Path]:
+    """Yields the path of a file to write. At the end, this file replaces the file at path.
 
-    A link stays a link to the file. Raises OSError if the file cannot be written.
+    After an exception, a full disk or the end of the process, the file at path is unchanged. The
+    new file has the mode of the old one. A link stays a link to the file. In an output_folder(),
+    the file is written directly, because the end of the folder does all this.
+
+    Raises OSError if the file cannot be written.
     """
-    if path.exists() and not path.is_file():  # such as /dev/stdout; a folder is refused
-        path.write_text(text, encoding="utf-8")
+    is_special = path.exists() and not path.is_file()  # such as /dev/stdout; a folder is refused
+    if is_special or path.parent.name.startswith(_UNFINISHED):
+        yield path
         return
     file = path.resolve()
     try:
-        with TemporaryDirectory(prefix=".unfinished-", dir=file.parent) as folder:
-            whole = Path(folder, file.name)
-            whole.write_text(text, encoding="utf-8")
-            whole.replace(file)
+        with TemporaryDirectory(prefix=_UNFINISHED, dir=file.parent) as folder:
+            unfinished = Path(folder, file.name)
+            yield unfinished
+            _move([unfinished], file.parent)
     except OSError as error:  # it names a temporary file
         raise OSError(error.errno, error.strerror, str(path)) from error
 
 
+def _move(files: Sequence[Path], folder: Path) -> None:
+    """Moves files into a folder, after all of their bytes are on the disk."""
+    for file in files:
+        with file.open("rb+") as opened:
+            os.fsync(opened.fileno())
+        with suppress(FileNotFoundError):
+            file.chmod(stat.S_IMODE((folder / file.name).stat().st_mode))
+    for file in files:
+        file.replace(folder / file.name)
+    if os.name == "posix":  # elsewhere a folder cannot be opened
+        descriptor = os.open(folder, os.O_RDONLY)
+        with suppress(OSError):  # some file systems cannot do this, and need not
+            os.fsync(descriptor)
+        os.close(descriptor)
+
+
+def write_whole(text: str, path: Path) -> None:
+    """Writes a text in UTF-8 as whole_file() does."""
+    with whole_file(path) as file:
+        file.write_text(text, encoding="utf-8")
+
+
 def write_json(values: object, path: Path) -> None:
-    """Writes JSON, numbers with all digits; a number that is not finite becomes null."""
-    text = json.dumps(finite(values), indent=1, allow_nan=False)
-    path.write_text(text + "\n", encoding="utf-8")
+    """Writes JSON as whole_file() does, numbers with all digits; one that is not finite is null."""
+    write_whole(json.dumps(finite(values), indent=1, allow_nan=False) + "\n", path)
 
 
 def finite(values: Any) -> Any:

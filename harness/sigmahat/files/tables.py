@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sigmahat.files.output import whole_file
+
 if TYPE_CHECKING:
     import pyarrow as pa
 
@@ -26,8 +28,8 @@ def name_and_unit(title: str) -> tuple[str, str | None]:
 
 
 def write_csv(path: Path, head: Iterable[str], rows: Iterable[Iterable[Any]]) -> None:
-    """Writes a table, numbers with all digits; None is an empty field."""
-    with path.open("w", newline="", encoding="utf-8") as file:
+    """Writes a table as whole_file() does, numbers with all digits; None is an empty field."""
+    with whole_file(path) as whole, whole.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(head)
         writer.writerows(rows)

@@ -1,6 +1,5 @@
 """Reads and changes TOML files, such as the configuration of a log."""
 
-import errno
 import sys
 from collections.abc import Iterator, Mapping, MutableMapping
 from pathlib import Path
@@ -8,6 +7,8 @@ from typing import Any
 
 import tomlkit
 from tomlkit.items import InlineTable, Item
+
+from sigmahat.files.whole_file import read_whole
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -26,13 +27,7 @@ def read(path: Path) -> tomlkit.TOMLDocument:
     Raises OSError if the file cannot be read. Raises ValueError if the file is not TOML (with the
     place), or far larger than a file written by hand.
     """
-    if path.exists() and not path.is_file():  # reading a pipe would wait
-        raise OSError(errno.EINVAL, "expected a file, got a folder, a pipe or a device")
-    with path.open("rb") as file:
-        content = file.read(_LONGEST + 1)
-    if len(content) > _LONGEST:
-        raise ValueError(f"expected at most {_LONGEST} bytes, got more: is it the log?")
-    text = content.decode().replace("\r\n", "\n").replace("\r", "\n")
+    text = read_whole(path, _LONGEST).replace("\r\n", "\n").replace("\r", "\n")
     # The time that tomlkit takes grows with the square of the keys, and more with their depth.
     try:
         keys = _keys(tomllib.loads(text), 1)

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from sigmahat.fmi.installed import fmu as installed_fmu
 from sigmahat.fmi.interrupts import interrupts_wait
+from sigmahat.fmi.quoted import quoted
 from sigmahat.fmi.unknown_name import unknown
 
 with interrupts_wait():  # FMPy needs lxml; a Ctrl-C during this import would be lost
@@ -74,7 +75,7 @@ class Model:
             return items[value]
         is_flag = isinstance(value, bool) and variable.type != "Boolean"
         if isinstance(value, str) or is_flag:
-            raise ValueError(f"{self.name}.{name}: expected {variable.type}, got {value!r}")
+            raise ValueError(f"{self.name}.{name}: expected {variable.type}, got {quoted(value)}")
         try:
             if variable.type == "Real":
                 return float(value)
@@ -86,7 +87,7 @@ class Model:
             if -_TOO_LARGE <= whole < _TOO_LARGE:
                 return whole
             expected += " of 32 bits"
-        raise ValueError(f"{self.name}.{name}: expected {expected}, got {_shown(value)}")
+        raise ValueError(f"{self.name}.{name}: expected {expected}, got {quoted(value)}")
 
     def items(self, name: str) -> dict[int, str]:
         """Returns the items of an enumeration: their names by their numbers."""
@@ -130,10 +131,3 @@ def installed_model(name: str) -> Model:
 @lru_cache(maxsize=32)
 def _model(path: Path, _changed: int, _size: int) -> Model:
     return Model(path)
-
-
-def _shown(value: object) -> str:
-    try:
-        return repr(value)[:100]
-    except ValueError:  # Python limits the number of digits of an integer as text
-        return "a number with too many digits"

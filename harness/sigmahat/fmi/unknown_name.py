@@ -3,7 +3,9 @@
 from collections.abc import Iterable
 from difflib import get_close_matches
 
-_LONGEST = 200  # characters of a name
+from sigmahat.fmi.quoted import quoted
+
+_LONGEST = 200  # characters of a name for which similar names are looked for
 
 _RENAMED = {
     "MatchedFilter": "FilteredRegression",
@@ -27,7 +29,7 @@ def unknown(kind: str, name: str, existing: Iterable[str]) -> str:
         return f"unknown {kind} {name!r}: it is called {_RENAMED[name]!r} now"
     short = len(name) <= _LONGEST
     similar = get_close_matches(name, names, n=3, cutoff=0.6) if short else []
-    message = f"unknown {kind} {name[:_LONGEST]!r}"
+    message = f"unknown {kind} {quoted(name)}"
     if similar:
         message += "; did you mean " + " or ".join(map(repr, similar)) + "?"
     if not similar or len(names) <= 20:

@@ -8,6 +8,7 @@ from typing import Any
 import tomlkit
 from tomlkit.items import Table
 
+from sigmahat.files.escape import one_line
 from sigmahat.files.templates import environment
 from sigmahat.fmi.model import installed_model
 from sigmahat.guess.columns import Column, Columns, likely_unit
@@ -40,8 +41,7 @@ def write(log: Log, columns: Columns, joints: Mapping[str, JointGuess]) -> str:
     several = len(joints) > 1
     head = {
         "log": log.path.name,
-        # The name of a column may have several lines.
-        "listed": "\n".join(_listed(log, columns, joints)).splitlines(),
+        "listed": list(_listed(log, columns, joints)),
         "several": several,
     }
     texts = {
@@ -162,10 +162,12 @@ def _scale_of(set_point: PortGuess) -> float:
     return 10.0 ** (1 - math.floor(math.log10(largest)))
 
 
-_TEMPLATES = environment(Path(__file__).parent, autoescape=False).overlay(
-    trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True
-)
-_TEMPLATES.filters["one_line"] = lambda text: " ".join(text.splitlines())
+_TEMPLATES = environment(
+    # Texts are comments, or strings of TOML that key() has made.
+    Path(__file__).parent,
+    autoescape=False,
+    finalize=lambda value: one_line(str(value)),
+).overlay(trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True)
 _TEMPLATES.filters["short"] = lambda number: float(f"{number:.12g}")
 _TEMPLATES.globals |= {
     "MEANINGS": MEANINGS,

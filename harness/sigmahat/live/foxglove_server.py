@@ -13,6 +13,7 @@ import foxglove
 from foxglove.channels import LogChannel
 from foxglove.messages import Log, LogLevel, Timestamp
 
+from sigmahat.files.output import write_whole
 from sigmahat.fmi.model import installed_model
 from sigmahat.fmi.series import schema
 from sigmahat.live.events import Event
@@ -90,7 +91,7 @@ def write_layout(joints: Sequence[LiveJoint], folder: Path) -> None:
         content = {"type": "split", "direction": "column", "items": items}
         tabs.append({"title": joint.name, "content": content})
     layout = {"version": 1, "content": {"type": "tabs", "selectedTabIndex": 0, "tabs": tabs}}
-    (folder / "foxglove-layout.json").write_text(json.dumps(layout), encoding="utf-8")
+    write_whole(json.dumps(layout), folder / "foxglove-layout.json")
 
 
 def _plot(topic: str, name: str, title: str) -> dict[str, Any]:

@@ -1,10 +1,10 @@
 """Writes a motion as files: CSV, a trajectory for ROS, and C code that computes the motion."""
 
-import json
 from pathlib import Path
 
 import numpy as np
 
+from sigmahat.files.escape import yaml_string
 from sigmahat.files.output import write_whole
 from sigmahat.files.tables import write_csv
 from sigmahat.motion.joints_of_log import Multisine
@@ -31,7 +31,7 @@ def write(motion: Multisine, joint: str, start: float, T: float, folder: Path) -
 
 def _ros(motion: Multisine, joint: str, start: float) -> str:
     """A trajectory_msgs/JointTrajectory, as `ros2 topic pub` and controllers read it."""
-    t, name = motion.times(_ROS_PERIOD), json.dumps(joint)
+    t, name = motion.times(_ROS_PERIOD), yaml_string(joint)
     lines = ["# trajectory_msgs/msg/JointTrajectory", f"joint_names: [{name}]", "points:"]
     for now, *point in zip(t.tolist(), *(each.tolist() for each in motion.at(t)), strict=True):
         point[0] += start

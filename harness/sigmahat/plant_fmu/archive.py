@@ -4,6 +4,8 @@ import zipfile
 from collections.abc import Mapping
 from pathlib import Path
 
+from sigmahat.files.output import whole_file
+
 # Zip has no time zone and starts in 1980; any fixed time would do.
 _TIME = (1980, 1, 1, 0, 0, 0)
 
@@ -19,7 +21,7 @@ def write(fmu: Path, contents: Mapping[str, Path | bytes]) -> None:
         for name, content in contents.items()
     }
     fmu.parent.mkdir(parents=True, exist_ok=True)
-    with zipfile.ZipFile(fmu, "w") as archive:
+    with whole_file(fmu) as whole, zipfile.ZipFile(whole, "w") as archive:
         for name in sorted(data):
             entry = zipfile.ZipInfo(name, _TIME)
             entry.compress_type = zipfile.ZIP_DEFLATED

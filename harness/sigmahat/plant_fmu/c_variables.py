@@ -3,6 +3,7 @@
 import re
 from xml.etree.ElementTree import Element
 
+from sigmahat.files.escape import c_string
 from sigmahat.plant_fmu.model_description import items, variables
 
 SEED, SAMPLE_PERIOD = "noise.seed", "noise.samplePeriod"
@@ -71,14 +72,14 @@ def c_table(root: Element, struct: str, places: dict[str, str], guid: str) -> st
         start = BOOLEAN.get(kind.get("start", ""), kind.get("start", "0"))
         low, high = _limits(root, kind)
         rows.append(
-            f'    {{"{name}", offsetof({struct}, {places[name]}), '
+            f"    {{{c_string(name)}, offsetof({struct}, {places[name]}), "
             f"SH_TYPE_{kind.tag.upper()}, {_role(variable)}, {start}, {low}, {high}}},"
         )
     table = "\n".join(rows)
     return f"""\
 /* Generated from the model description; do not edit. */
-#define SH_IDENTIFIER "{identifier}"
-#define SH_GUID "{guid}"
+#define SH_IDENTIFIER {c_string(identifier)}
+#define SH_GUID {c_string(guid)}
 
 static const sh_variable VARIABLES[] = {{
 {table}

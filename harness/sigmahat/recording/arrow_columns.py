@@ -6,6 +6,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute
 
+from sigmahat.fmi.quoted import quoted
 from sigmahat.recording.log import EXACT, Array, LogError
 
 _NO_TEXT = r"^\s*([+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?(?i:nan|inf|infinity))?\s*$"
@@ -33,7 +34,7 @@ def numbers(path: Path, name: str, column: pa.ChunkedArray) -> Array:
     if pa.types.is_null(kind):
         return np.full(len(column), np.nan)
     if not (pa.types.is_floating(kind) or pa.types.is_integer(kind) or pa.types.is_boolean(kind)):
-        raise LogError(f"{path}: column {name!r} holds {kind}, expected numbers")
+        raise LogError(f"{path}: column {quoted(name)} holds {kind}, expected numbers")
     if pa.types.is_integer(kind) and not fits_float64(column):
         column = column.cast(pa.int64(), safe=False)  # large uint64 become negative
         first = next(x.as_py() for x in column if x.is_valid)
@@ -57,7 +58,9 @@ def first_text(column: pa.ChunkedArray) -> tuple[int, str] | None:
 
 def holds_text(path: Path, name: str, row: int, text: str) -> LogError:
     """Creates the error for a column that contains text in the given row."""
-    return LogError(f"{path}: column {name!r} holds text ({text!r} in row {row}), expected numbers")
+    return LogError(
+        f"{path}: column {quoted(name)} holds text ({quoted(text)} in row {row}), expected numbers"
+    )
 
 
 def fits_float64(column: pa.ChunkedArray) -> bool:

@@ -15,6 +15,7 @@ from pydantic_core import ErrorDetails, PydanticCustomError
 
 from sigmahat.files import toml_file
 from sigmahat.fmi.model import Value
+from sigmahat.fmi.quoted import quoted
 from sigmahat.fmi.unknown_name import unknown
 from sigmahat.recording import several_joints
 from sigmahat.recording.deformation import missing_position
@@ -182,7 +183,7 @@ def checked_configuration(
     if joint not in known:
         what = f"expected the name of one of its joints ({', '.join(known)})"
         if joint:
-            one = f"it is the configuration of one joint, expected no name, got {joint!r}"
+            one = f"it is the configuration of one joint, expected no name, got {quoted(joint)}"
             what = one if known == [""] else unknown("joint", joint, known)
         raise LogError(f"{path}: {what}")
     values = several_joints.of_joint(document, joint).unwrap()
@@ -255,7 +256,7 @@ def _refuse_repeated(file: _ConfigurationFile, path: Path) -> None:
         if port.column in used:
             raise LogError(
                 f"{path}: [{used[port.column]}] and [ports.{name}] both use the column "
-                f"{port.column!r}; name another column for one of them"
+                f"{quoted(port.column)}; name another column for one of them"
             )
         used[port.column] = f"ports.{name}"
 
@@ -300,4 +301,4 @@ def _explain(error: ErrorDetails) -> str:
         return f"{where} is 0; fill in {choices(where)}"
     table = f"a table [{where}]"
     expected = _KINDS.get(what, table if what in ("dict_type", "dataclass_type") else error["msg"])
-    return f"{where}: expected {expected}, got {error['input']!r}"
+    return f"{where}: expected {expected}, got {quoted(error['input'])}"

@@ -11,6 +11,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
+from sigmahat.fmi.quoted import quoted
 from sigmahat.recording.configuration import Configuration, Port, Time
 from sigmahat.recording.counters import Unwrapping, WholePeriods
 from sigmahat.recording.deformation import with_positions
@@ -208,7 +209,7 @@ def _column(
     values = log.read(port.column)
     if len(values) != len(t):
         raise LogError(
-            f"{log.path}: column {port.column!r} has {len(values)} samples, its time column "
+            f"{log.path}: column {quoted(port.column)} has {len(values)} samples, its time column "
             f"{len(t)}; name the right time column in ports.{name}.time"
         )
     missing = len(values) - int(np.count_nonzero(np.isfinite(t) & np.isfinite(values)))

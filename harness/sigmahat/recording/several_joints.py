@@ -13,11 +13,18 @@ from tomlkit.container import Container
 from tomlkit.items import Item, Table
 
 from sigmahat.files import toml_file
+from sigmahat.fmi.quoted import quoted
 
 JOINTS = "joints"  # name of the section
 Place = tuple[str, ...]
 """Sections and key of a TOML value: ("ports", "q", "unit"), ("parameters", "motor.B")."""
-_NAME = re.compile(r"\w[\w.-]*")
+NAMES = "letters, digits, '_', '-' and '.', of which the last two are not first"
+_LONGEST = 80  # characters of a name
+
+
+def is_name(name: str) -> bool:
+    """Returns whether a joint may have this name, which is also the name of a folder."""
+    return len(name) <= _LONGEST and re.fullmatch(r"\w[\w.-]*", name) is not None
 
 
 def names(document: Mapping[str, Any]) -> list[str]:
@@ -29,12 +36,11 @@ def names(document: Mapping[str, Any]) -> list[str]:
     if not isinstance(joints, Mapping) or not joints:
         return [""]
     for name, each in joints.items():
-        if not _NAME.fullmatch(name):
-            raise ValueError(
-                f"[joints] has the name {name!r}; expected letters, digits, '_', '-' and '.'"
-            )
+        if not is_name(name):
+            raise ValueError(f"[joints] has the name {quoted(name)}; expected {NAMES}")
         if not isinstance(each, Mapping):
-            raise ValueError(f"joints.{name}: expected a table [joints.{name}], got {each!r}")
+            got = quoted(each)
+            raise ValueError(f"joints.{name}: expected a table [joints.{name}], got {got}")
     return list(joints)
 
 

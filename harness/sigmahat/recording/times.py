@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from sigmahat.fmi.quoted import quoted
 from sigmahat.recording.configuration import Configuration, Time
 from sigmahat.recording.log import Array, Log, LogError
 from sigmahat.recording.notes import (
@@ -50,7 +51,7 @@ def times_of(
     finite = np.isfinite(times)
     given = times if finite.all() else times[finite]
     if len(given) < 2:
-        raise LogError(f"{log.path}: time column {column!r} holds fewer than two numbers")
+        raise LogError(f"{log.path}: time column {quoted(column)} holds fewer than two numbers")
     steps = np.diff(given)
     if steps.min() < 0:
         given = _continued(given, column, np.flatnonzero(finite), configuration.time, notes)
@@ -66,8 +67,8 @@ def times_of(
         i = int(np.argmax(steps <= 0))
         row = np.flatnonzero(finite)[i + 1] + 1
         raise LogError(
-            f"{log.path}: time column {column!r} does not increase: {_shown(given, i + 1)} in "
-            f"row {row} after {_shown(given, i)}; sort or split the log"
+            f"{log.path}: time column {quoted(column)} does not increase: "
+            f"{_shown(given, i + 1)} in row {row} after {_shown(given, i)}; sort or split the log"
         )
     if len(given) < len(times):
         times[~finite] = np.nan

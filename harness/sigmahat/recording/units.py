@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 from typing import TypeVar
 
+from sigmahat.fmi.quoted import quoted
 from sigmahat.recording.configuration import PORTS, Port
 from sigmahat.recording.log import Array, LogError
 
@@ -102,7 +103,7 @@ class Conversion:
 def _needed(where: str, port: Port, key: str, unit: str) -> float:
     value = getattr(port, key)
     if value is None:
-        raise LogError(f"{where}: unit {unit!r} needs {key}; add it to [{where}]")
+        raise LogError(f"{where}: unit {quoted(unit)} needs {key}; add it to [{where}]")
     return float(value)
 
 
@@ -118,7 +119,7 @@ def _in(where: str, unit: str, target: str, usual: tuple[str, ...] = _USUAL) -> 
     if unit == target:  # as usual; pint takes long to import
         return 1.0
     if len(unit) > _LONGEST or _TOWER.search(unit):  # pint would compute the power
-        raise LogError(f"{where}: unknown unit {unit[:_LONGEST]!r}{_meant('', usual)}")
+        raise LogError(f"{where}: unknown unit {quoted(unit)}{_meant('', usual)}")
     import pint
 
     try:
@@ -127,10 +128,10 @@ def _in(where: str, unit: str, target: str, usual: tuple[str, ...] = _USUAL) -> 
         return float(quantity.to(target.replace(".", "*")).magnitude)
     except pint.DimensionalityError as error:
         raise LogError(
-            f"{where}: unit {unit!r} cannot be converted to {target}{_meant('', usual)}"
+            f"{where}: unit {quoted(unit)} cannot be converted to {target}{_meant('', usual)}"
         ) from error
     except Exception as error:  # any: the parser of pint raises many kinds
-        raise LogError(f"{where}: unknown unit {unit!r}{_meant(unit, usual)}") from error
+        raise LogError(f"{where}: unknown unit {quoted(unit)}{_meant(unit, usual)}") from error
 
 
 def _meant(unit: str, usual: tuple[str, ...]) -> str:

@@ -22,7 +22,6 @@ from sigmahat.result.curve import (
     stiffness_table,
 )
 from sigmahat.result.curve_of_log import POINTS, MeasuredPoints, read_points
-from sigmahat.result.data_sheet import WORDS
 from sigmahat.result.estimate import continued_in_words, read_joints
 from sigmahat.result.estimate_table import REPLAYED, EstimateTable, Replayed
 from sigmahat.result.headline import Confidence, headline
@@ -33,7 +32,7 @@ from sigmahat.result.log_panels import (
     sampling,
     stiffness_panels,
 )
-from sigmahat.result.sheet import FORMAT, Sheet
+from sigmahat.result.sheet import FORMAT, WORDS, Sheet
 from sigmahat.result.stored import wrong_values
 from sigmahat.show.style import plain_text, plain_title, plain_unit
 
@@ -127,11 +126,18 @@ def _origin(sheet: Sheet, log: Replayed, folder: Path) -> str:
 
 
 def _findings_table(folder: Path, values: Sequence[Mapping[str, Any]]) -> TextTable:
+    path = REPLAYED.path(folder)
     try:
         findings = findings_of(values)
     except ValidationError as error:
-        raise wrong_values(REPLAYED.path(folder), error, ["findings"]) from error
-    rows = [[finding.severity.value, sentence(finding)] for finding in findings]
+        raise wrong_values(path, error, ["findings"]) from error
+    try:
+        rows = [[finding.severity.value, sentence(finding)] for finding in findings]
+    except (KeyError, TypeError) as error:  # the sentence needs values that the finding lacks
+        raise ValueError(
+            f"{path}: damaged: expected findings with the values of their kinds, got others; "
+            "run `sigmahat estimate` again"
+        ) from error
     note = "" if rows else "The check found no error in the configuration."
     return TextTable("Checks", ["", "finding"], rows, (0, 1), note=note)
 

@@ -28,19 +28,6 @@ UNITS = {
 """Units of the estimates of FilteredRegression besides the motor data, such as output bias_hat."""
 MOTOR = {"B": "kg.m2", "D_theta": "N.m.s/rad"}
 """Units of the motor data: B is parameter motor.B and output B_hat of the FMU."""
-WORDS = {
-    "gamma": "gear ratio",
-    "B": "inertia of the motor",
-    "D_theta": "viscous friction of the motor",
-    "tau_coulomb": "Coulomb friction of the motor",
-    "bias": "bias of the torque",
-    "damping": "damping of the joint",
-    "load_friction": "friction by load",
-    "eccentric": "eccentricity of the encoders",
-    "delay": "delay of the torque",
-    "hysteresis": "hysteresis",
-}
-"""Descriptions of the parameters and the effects of the joint for users."""
 
 
 def priors(p: Mapping[str, Value]) -> dict[str, float]:

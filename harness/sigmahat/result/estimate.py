@@ -13,12 +13,14 @@ from numpy.typing import NDArray
 from sigmahat.files.output import sha256, write_json
 from sigmahat.files.tables import read_csv, write_csv
 from sigmahat.fmi.model import Value, installed_model
+from sigmahat.fmi.quoted import quoted
 from sigmahat.fmi.series import Series
 from sigmahat.recording import notes
 from sigmahat.recording.configuration import Configuration
 from sigmahat.recording.log import Log
 from sigmahat.recording.notes import NoSignal, RecordingNote
 from sigmahat.recording.replay import OUTPUTS
+from sigmahat.recording.several_joints import NAMES, is_name
 from sigmahat.result import sheet
 from sigmahat.result.curve import (
     CURVE,
@@ -30,7 +32,7 @@ from sigmahat.result.curve import (
     write_curve,
 )
 from sigmahat.result.curve_of_log import POINTS, Answer, write_points
-from sigmahat.result.data_sheet import MOTOR, UNITS, WORDS, data_sheet, priors
+from sigmahat.result.data_sheet import MOTOR, UNITS, data_sheet, priors
 from sigmahat.result.estimate_table import MCAP, REPLAYED, EstimateWriter, Replayed, mcap_file
 from sigmahat.result.headline import Confidence, StiffnessChange, headline
 from sigmahat.result.learned import LEARNED, read_learned, write_learned
@@ -303,7 +305,7 @@ def _found(result: Estimate) -> Iterator[str]:
         f"{motor['D_theta_hat']:.4g} N.m.s/rad, Coulomb friction {motor['tau_coulomb_hat']:.3g} N.m"
     )
     others = [
-        f"{WORDS[name]} {value:.3g} {UNITS[name]}".rstrip()
+        f"{sheet.WORDS[name]} {value:.3g} {UNITS[name]}".rstrip()
         for name, std in priors(result.parameters).items()
         if abs(value := result.joint[f"{name}_hat"]) > _NEGLIGIBLE * std
     ]
@@ -353,4 +355,10 @@ def read_joints(folder: Path) -> tuple[list[str], pa.Table]:
     table = read_csv(folder / JOINTS)
     if table.column_names[:1] != ["joint"]:
         raise ValueError(f"{folder / JOINTS}: expected a table of `estimate`; run `estimate` again")
-    return list(dict.fromkeys(map(str, table["joint"].to_pylist()))), table
+    names = list(dict.fromkeys(map(str, table["joint"].to_pylist())))
+    if wrong := [name for name in names if not is_name(name)]:
+        raise ValueError(
+            f"{folder / JOINTS}: expected names of joints ({NAMES}), got {quoted(wrong[0])}; run "
+            "`estimate` again"
+        )
+    return names, table

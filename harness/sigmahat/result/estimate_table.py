@@ -34,7 +34,7 @@ from sigmahat.recording.notes import RecordingNote
 from sigmahat.recording.readers.csv_parquet import CsvLog, ParquetLog
 from sigmahat.recording.sampling import Samples
 from sigmahat.result.headline import StiffnessChange
-from sigmahat.result.stored import NO_OTHER_KEYS, Format, Text
+from sigmahat.result.stored import NO_OTHER_KEYS, Format, Text, Word
 
 _ROWS = 1 << 15
 _STEM = "estimate"
@@ -226,7 +226,7 @@ class Replayed:
     skipped: int  # ticks without an estimate: a measurement was missing
     T: float  # time between ticks [s]
     changes: Sequence[StiffnessChange]  # changes of the stiffness
-    doubt: dict[Text, float]
+    doubt: dict[Word, float]
     """Fraction of the ticks in the second half, by item of the output `doubt`."""
     notes: Sequence[RecordingNote]  # on reading the log and on its samples
     joint: Text = ""  # name of the joint; empty if the configuration names no joint

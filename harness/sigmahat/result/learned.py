@@ -15,7 +15,7 @@ from sigmahat.files.output import write_json
 from sigmahat.fmi.installed import version
 from sigmahat.fmi.model import installed_model
 from sigmahat.recording.log import LogError
-from sigmahat.result.stored import NO_OTHER_KEYS, FmuId, Format, LearnedLog, Text
+from sigmahat.result.stored import NO_OTHER_KEYS, FmuId, Format, LearnedLog, Text, Version, Word
 
 _AGAIN = "run `sigmahat estimate` on the first log again"
 _OTHER = f"both must have the same parameters: change the configuration, or {_AGAIN}"
@@ -39,9 +39,9 @@ class _StateFile:
 
     format: Text
     version: int
-    sigmahat: Text
+    sigmahat: Version
     fmu: FmuId
-    method: Text
+    method: Word
     logs: list[LearnedLog]
     parameters: dict[str, Any]
     state: Text

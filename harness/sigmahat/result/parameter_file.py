@@ -9,13 +9,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from sigmahat.files.escape import matlab_comment, modelica_comment, modelica_string, one_line
 from sigmahat.files.output import write_whole
-from sigmahat.files.templates import environment
+from sigmahat.files.templates import xml
 from sigmahat.fmi.model import Model
 from sigmahat.result.sheet import Sheet, origin
 
 _CURVE = "rls.eta_0["
-_TEMPLATES = environment(Path(__file__).with_name("templates"))
+_TEMPLATE = Path(__file__).with_name("templates") / "parameters.ssv"
 
 
 @dataclass(frozen=True)
@@ -39,7 +40,7 @@ def write(sheet: Sheet, model: Model, kind: str, path: Path) -> None:
     """Writes the start values of a sheet for this FMU; kind is a key of KINDS.
 
     Raises ValueError for a start value that does not fit the FMU, and for a file name that cannot
-    be the name of the contents.
+    be the name of a MATLAB function or a Modelica record.
     """
     write_whole(KINDS[kind](sheet, model, list(_starts(sheet, model)), path.stem), path)
 
@@ -67,14 +68,10 @@ def _ssv(sheet: Sheet, model: Model, starts: list[_Start], name: str) -> str:
     numbers, own = ("Real", "Integer"), model.parameters({})
     listed = [s for s in starts if s.variable.type in numbers or own[s.name] != (s.item or s.value)]
     units = {s.variable.unit for s in listed}
-    if re.search(r"[\x00-\x1f\ud800-\udfff\ufffe\uffff]", name):
-        raise ValueError(
-            f"file name {name!r}: expected characters that XML allows, because the file contains "
-            "its name; choose another name with --out"
-        )
-    return _TEMPLATES.get_template("parameters.ssv").render(
-        element=name,
-        comments=_head(sheet),
+    return xml(
+        _TEMPLATE,
+        _head(sheet),
+        element=one_line(name),
         parameters=[(s.variable, s.item or s.text) for s in listed],
         units=[unit for unit in model.description.unitDefinitions if unit.name in units],
     )
@@ -83,16 +80,17 @@ def _ssv(sheet: Sheet, model: Model, starts: list[_Start], name: str) -> str:
 def _matlab(sheet: Sheet, model: Model, starts: list[_Start], name: str) -> str:
     """Formats a MATLAB function that returns a structure: parameter motor.B is field motor.B."""
     _identifier(name)
-    lines = [f"function p = {name}", f"%{name.upper()} {sheet.fmu.name}: what was learned."]
-    lines += [f"%   {line}" for line in _head(sheet)]
-    lines += [
-        "%   rls.eta_0 is a matrix, whose indices begin with 1: rls.eta_0(i + 1, j + 1) is",
-        "%   rls.eta_0[i,j] of the FMU. An enumeration is written as the number of its item.",
+    said = [
+        *_head(sheet),
+        "rls.eta_0 is a matrix, whose indices begin with 1: rls.eta_0(i + 1, j + 1) is",
+        "rls.eta_0[i,j] of the FMU. An enumeration is written as the number of its item.",
     ]
+    lines = [f"function p = {name}", f"%{name.upper()} Start values of the estimator."]
+    lines += (matlab_comment(f"  {line}") for line in said)
     single, curve = _divided(starts)
     for s in single:
         note = s.item or (f"[{s.variable.unit}]" if s.variable.unit else "")
-        lines.append(f"p.{s.name} = {s.text};" + (f" % {note}" if note else ""))
+        lines.append(f"p.{s.name} = {s.text}; {matlab_comment(note) if note else ''}".rstrip())
     lines += [f"p.rls.eta_0 = {_matrix(curve)};", "end", ""]
     return "\n".join(lines)
 
@@ -108,12 +106,13 @@ def _modelica(sheet: Sheet, model: Model, starts: list[_Start], name: str) -> st
     size = f"{len(curve)}, {len(curve[0])}"
     text = f'= {_matrix(curve)} "Initial estimate, the curve"'
     groups["rls"].append(f"parameter Real eta_0[{size}] {text};")
-    title = f"{sheet.fmu.name}: what was learned"
-    lines = [f'record {name} "{title}"', *(f"  // {line}" for line in _head(sheet))]
-    lines += [
-        "  // rls.eta_0[i + 1, j + 1] is rls.eta_0[i,j] of the FMU, whose indices begin with 0.",
-        "  // An enumeration is written as the number of its item.",
+    said = [
+        *_head(sheet),
+        "rls.eta_0[i + 1, j + 1] is rls.eta_0[i,j] of the FMU, whose indices begin with 0.",
+        "An enumeration is written as the number of its item.",
     ]
+    title = modelica_string(f"{sheet.fmu.name}: what was learned")
+    lines = [f"record {name} {title}", *(f"  {modelica_comment(line)}" for line in said)]
     for group, declared in groups.items():
         if not group:
             lines += [f"  {each}" for each in declared]
@@ -128,10 +127,10 @@ def _modelica(sheet: Sheet, model: Model, starts: list[_Start], name: str) -> st
 def _component(s: _Start) -> str:
     variable = s.variable
     kind = "Integer" if variable.type == "Enumeration" else variable.type
-    unit = f'(unit="{variable.unit}")' if variable.unit else ""
+    unit = f"(unit={modelica_string(variable.unit)})" if variable.unit else ""
     text = f"{variable.description}: {s.item}" if s.item else variable.description
-    text = text.replace("\\", "\\\\").replace('"', '\\"')
-    return f'parameter {kind} {s.name.rpartition(".")[2]}{unit} = {s.text} "{text}";'
+    name = s.name.rpartition(".")[2]
+    return f"parameter {kind} {name}{unit} = {s.text} {modelica_string(text)};"
 
 
 def _divided(starts: list[_Start]) -> tuple[list[_Start], list[list[float]]]:

@@ -9,6 +9,7 @@ allows, the interval is also a range for domain randomization. The formats are t
 ``templates/``.
 """
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,18 +18,21 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 from sigmahat.files.output import write_whole
-from sigmahat.files.templates import environment
-from sigmahat.result.sheet import Parameter, Sheet, one_line, origin
+from sigmahat.files.templates import xml
+from sigmahat.result.sheet import Parameter, Sheet, origin
 from sigmahat.result.stored import Range
 
 _ROTOR = 1e-6  # least inertia of a link, used for a rotor with a separate inertia [kg.m2]
 _EXACT = 1e-3  # least error of a polynomial that is reported, relative to the largest torque
+_TEMPLATES = Path(__file__).with_name("templates")
 _MISSING = {
-    "mjcf": "",
-    "sdf": "SDF has no rotor inertia: the link `rotor` has this inertia, at the gear output.",
-    "urdf": "URDF has no spring: the element `gazebo` contains it, and only Gazebo reads it. "
-    "URDF has no rotor inertia: the link `rotor` has this inertia, at the gear output.",
-    "drake": "Drake has no Coulomb friction in a joint: Drake ignores the element `friction`.",
+    "mjcf": [],
+    "sdf": ["SDF has no rotor inertia: the link `rotor` has this inertia, at the gear output."],
+    "urdf": [
+        "URDF has no spring: the element `gazebo` contains it, and only Gazebo reads it. "
+        "URDF has no rotor inertia: the link `rotor` has this inertia, at the gear output."
+    ],
+    "drake": ["Drake has no Coulomb friction in a joint: Drake ignores the element `friction`."],
 }
 
 
@@ -127,11 +131,19 @@ def write_model(sheet: Sheet, kind: str, path: Path) -> None:
     reach = sheet.polynomial.phi
     if reach is None:
         raise ValueError("no deformation in the data sheet: expected data of a joint that moved")
-    name = one_line(path.name.partition(".")[0]).replace(" ", "_")
+    name = re.sub(r"[^\w-]", "_", path.name.partition(".")[0], flags=re.ASCII)
     parameters = _parameters(sheet)
     spring = _spring(sheet, reach, degree=3 if kind == "mjcf" else 1)
-    templates = environment(Path(__file__).parent / "templates")
-    model = templates.get_template(f"{'sdf' if kind == 'drake' else kind}.xml").render(
+    comments = [f"{name}_motor: the motor at its gear output; {name}_flexibility: the deformation."]
+    for key, each in parameters.items():
+        ends = each.interval
+        claim = f"95 % from {ends[0]:.6g} to {ends[1]:.6g}" if ends else "no interval"
+        about = f"{each.value:.6g} {each.unit}, {claim} ({each.interval_from})"
+        comments.append(f"{name}_{key} = {about}")
+    comments += [*_limits(sheet, spring, reach), *_MISSING[kind], *origin(sheet)]
+    text = xml(
+        _TEMPLATES / f"{'sdf' if kind == 'drake' else kind}.xml",
+        comments,
         name=name,
         parameters=parameters,
         gear_ratio=sheet.parameters["gamma"].value,
@@ -141,14 +153,7 @@ def write_model(sheet: Sheet, kind: str, path: Path) -> None:
         inertia=max(parameters["motor.armature"].value, _ROTOR),
         drake=kind == "drake",
     )
-    lines = [f"{name}_motor: the motor at its gear output; {name}_flexibility: the deformation."]
-    for key, each in parameters.items():
-        ends = each.interval
-        claim = f"95 % from {ends[0]:.6g} to {ends[1]:.6g}" if ends else "no interval"
-        lines.append(f"{name}_{key} = {each.value:.6g} {each.unit}, {claim} ({each.interval_from})")
-    lines += [*_limits(sheet, spring, reach), _MISSING[kind], *origin(sheet)]
-    comments = [f"<!-- {line} -->" for line in lines if line]
-    write_whole("\n".join(['<?xml version="1.0"?>', *comments, model, ""]), path)
+    write_whole(text, path)
 
 
 _SHOWN = 0.01  # fraction of the largest torque: a smaller effect is not listed

@@ -4,35 +4,70 @@ values with which the FMU continues from these results.
 Numbers are written with all digits, so that a reader gets exactly the estimates.
 """
 
-import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic.dataclasses import dataclass
+from pydantic import AfterValidator
 
 from sigmahat.estimator.estimator import Estimator
 from sigmahat.estimator.powers import powers_of_phi
 from sigmahat.fmi.model import Value, installed_model
-from sigmahat.result.stored import NO_OTHER_KEYS, FmuId, Format, LearnedLog, Range, Text
+from sigmahat.fmi.unknown_name import unknown
+from sigmahat.result.stored import (
+    NO_OTHER_KEYS,
+    Digest,
+    FmuId,
+    Format,
+    LearnedLog,
+    Name,
+    Range,
+    Text,
+    Unit,
+    Version,
+    Word,
+    form,
+)
 
 Array = NDArray[np.float64]
 
 UNITS = {"phi": "rad", "set_point": "1", "sigma": "N.m/rad", "tau_e": "N.m", "misfit": "1"}
+WORDS = {
+    "gamma": "gear ratio",
+    "B": "inertia of the motor",
+    "D_theta": "viscous friction of the motor",
+    "tau_coulomb": "Coulomb friction of the motor",
+    "bias": "bias of the torque",
+    "damping": "damping of the joint",
+    "load_friction": "friction by load",
+    "eccentric": "eccentricity of the encoders",
+    "delay": "delay of the torque",
+    "hysteresis": "hysteresis",
+}
+"""Descriptions of the parameters and the effects of the joint for users."""
+_HIGHEST = 30  # power; those of the estimator are far below
+_NEEDED = ("gamma", "B", "D_theta")  # parameters of every joint
+_CURVE = "rls.eta_0["
+_Source = Annotated[Text, form("identify|prior|exact", "identify, prior or exact")]
 
 
-@dataclass(frozen=True, config=NO_OTHER_KEYS)
+@dataclass(frozen=True)
 class Source:
     """The configuration file from which the data sheet was created."""
 
+    __pydantic_config__ = NO_OTHER_KEYS
+
     file: Text  # path of the file
-    sha256: Text | None  # SHA-256 of the bytes; None if the file does not exist
+    sha256: Digest | None  # of the bytes; None if the file does not exist
 
 
-@dataclass(frozen=True, config=NO_OTHER_KEYS)
+@dataclass(frozen=True)
 class Stiffness:
     """The stiffness at one deformation and set-point, with its interval."""
+
+    __pydantic_config__ = NO_OTHER_KEYS
 
     phi: float  # deformation [rad]
     set_point: float  # set-point [1]
@@ -40,20 +75,31 @@ class Stiffness:
     interval: Range | None  # 95 % interval [N.m/rad]; None: the method gives none
 
 
-@dataclass(frozen=True, config=NO_OTHER_KEYS)
+@dataclass(frozen=True)
 class Polynomial:
     """Torque of the spring: sum of eta[i][j] set-point^powers_of_set_point[j] phi^powers_of_phi[i].
 
     The stiffness is the derivative of the torque with respect to phi.
     """
 
+    __pydantic_config__ = NO_OTHER_KEYS
+
     powers_of_phi: list[int]
     powers_of_set_point: list[int]
     eta: list[list[float]]  #: [size: powers of phi x powers of the set-point]
-    units: list[list[Text]]  #: Units of eta; phi is in rad, the set-point has no unit.
+    units: list[list[Unit]]  #: Units of eta; phi is in rad, the set-point has no unit.
     phi: Range | None
     """Range of the measured deformation [rad]; outside, the polynomial is extrapolated."""
     set_point: Range | None  #: Range of the set-point in the data [1].
+
+    def __post_init__(self) -> None:
+        """Raises ValueError for powers that do not fit the coefficients."""
+        n, m = len(self.powers_of_phi), len(self.powers_of_set_point)
+        if not n * m or [len(row) for row in self.eta] != [m] * n:
+            raise ValueError(f"expected {n} x {m} coefficients eta, one or more")
+        powers = *self.powers_of_phi, *self.powers_of_set_point
+        if not all(0 <= power <= _HIGHEST for power in powers):
+            raise ValueError(f"expected powers from 0 to {_HIGHEST}")
 
     def at(self, phi: Array, set_point: float | Array) -> tuple[Array, Array]:
         """Torque [N.m] and stiffness [N.m/rad] at deformations [rad].
@@ -75,60 +121,90 @@ class Polynomial:
         return any(any(row[1:]) for row in self.eta)
 
 
-@dataclass(frozen=True, config=NO_OTHER_KEYS)
+@dataclass(frozen=True)
 class Parameter:
     """A parameter of the joint."""
 
+    __pydantic_config__ = NO_OTHER_KEYS
+
     value: float
-    unit: Text
+    unit: Unit
     interval: Range | None
     """95 % interval; None if the value is taken as exact, or the method gives no interval."""
-    interval_from: Text  # "identify" or "prior"; or why no interval is given
+    interval_from: _Source  # or that no interval is needed: exact
 
 
-@dataclass(frozen=True, config=NO_OTHER_KEYS)
+@dataclass(frozen=True)
 class RestsOn:
     """Assumptions of the result that no data can verify."""
+
+    __pydantic_config__ = NO_OTHER_KEYS
 
     torque_gain: float
     """Relative standard deviation of the gain of the torque [1]; the intervals include it."""
     sigma_per_gain: float  # relative change of the stiffness per relative change of the gain [1]
-    exact: list[Text]  # parameters that are taken as exact
-    absent: list[Text]  # effects that are taken as absent
+    exact: list[Name]  # parameters that are taken as exact
+    absent: list[Word]  # effects that are taken as absent
 
 
-@dataclass(frozen=True, config=NO_OTHER_KEYS)
+@dataclass(frozen=True)
 class Check:
     """Outputs of the FMU with the start values, before any sample, to verify these values."""
+
+    __pydantic_config__ = NO_OTHER_KEYS
 
     sigma: float  # [N.m/rad]
     tau_e: float  # [N.m]
 
 
-@dataclass(frozen=True, config=NO_OTHER_KEYS)
+def _parameters_of_a_joint(parameters: dict[str, Parameter]) -> dict[str, Parameter]:
+    """Raises ValueError for names that no joint has, and for missing ones."""
+    for name in _NEEDED:
+        if name not in parameters:
+            raise ValueError(f"expected the parameter {name}")
+    for name in parameters:
+        if name not in WORDS:
+            raise ValueError(unknown("parameter of a joint", name, WORDS))
+    return parameters
+
+
+def _of_an_estimator(start: dict[str, Value]) -> dict[str, Value]:
+    """Raises ValueError unless there are a bandwidth and a full matrix of coefficients."""
+    if not isinstance(start.get("regression.bandwidth"), (int, float)):
+        raise ValueError("expected the number regression.bandwidth")
+    places = {tuple(name[len(_CURVE) : -1].split(",")) for name in start if name.startswith(_CURVE)}
+    n, m = (len({place[k] for place in places if len(place) == 2}) for k in (0, 1))
+    if not places or places != {(str(i), str(j)) for i in range(n) for j in range(m)}:
+        raise ValueError("expected a full matrix of coefficients rls.eta_0[i,j]")
+    return start
+
+
+@dataclass(frozen=True)
 class Sheet:
     """The contents of the data sheet `joint.json`."""
 
+    __pydantic_config__ = NO_OTHER_KEYS
+
     format: Text
     version: int
-    sigmahat: Text  # version of the package that wrote the file
-    units: dict[str, Text]
+    sigmahat: Version  # version of the package that wrote the file
+    units: dict[Word, Unit]
     """Units of the numbers with these keys in the file; an interval has the unit of its value."""
     fmu: FmuId
     logs: list[LearnedLog]  # logs that the estimator has processed, in this order
     configuration: Source
-    method: Text
-    modality: Text
+    method: Word
+    modality: Word
     at_the_end: Stiffness  # the last estimate
     confident: bool  # whether the estimator was confident at the end
-    doubt: Text  # why the estimator was not confident
+    doubt: Word  # why the estimator was not confident
     misfit: float  # misfit of the model; 1 if the model holds [1]
     polynomial: Polynomial
     curve: list[Stiffness] | None
     """The stiffness in the range of the data; None if the method gives no interval."""
-    parameters: dict[str, Parameter]
+    parameters: Annotated[dict[Text, Parameter], AfterValidator(_parameters_of_a_joint)]
     rests_on: RestsOn
-    start_values: dict[str, bool | int | float | str]
+    start_values: Annotated[dict[Name, bool | int | float | Text], AfterValidator(_of_an_estimator)]
     """Start values of the FMU by name, with which the FMU continues from the estimate."""
     check: Check
 
@@ -139,13 +215,8 @@ FORMAT = Format("joint.json", "sigmahat joint data sheet", 1, Sheet)  # format o
 def origin(sheet: Sheet) -> Iterator[str]:
     """Yields lines about the origin of the values, for comments in other files."""
     for log in sheet.logs:
-        yield f"learned from {one_line(log.file)}, SHA-256 {log.sha256}"
-    yield f"written by sigmahat {one_line(sheet.sigmahat)}"
-
-
-def one_line(text: str) -> str:
-    """Replaces characters that could end a line, a comment or a string in other file formats."""
-    return re.sub(r"-(?=-)", "- ", re.sub(r"[^\w .,:/\\+()@=-]", "_", text, flags=re.ASCII))
+        yield f"learned from {log.file}, SHA-256 {log.sha256}"
+    yield f"written by sigmahat {sheet.sigmahat}"
 
 
 def _units(powers: Sequence[int], m: int) -> list[list[str]]:
@@ -209,7 +280,6 @@ def start_of(curve: Polynomial) -> dict[str, Value]:
     return {**start, "rls.n": len(curve.eta), "rls.m": len(curve.eta[0])}
 
 
-_CURVE = "rls.eta_0["
 _NOT_IN_A_RUN = (
     *("B", "load_friction", "eccentric", "eccentric_motor", "delay", "reversal", "power", "gap"),
     "hysteresis",

@@ -3,17 +3,43 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Generic, TypeVar
 
-from pydantic import ConfigDict, Strict, TypeAdapter, ValidationError
+from pydantic import AfterValidator, ConfigDict, Strict, TypeAdapter, ValidationError
+from pydantic_core import PydanticCustomError
 
+from sigmahat.files.whole_file import read_whole
 from sigmahat.fmi.model import Model
+from sigmahat.fmi.quoted import cut, quoted
 
-NO_OTHER_KEYS = ConfigDict(extra="forbid")
-Text = Annotated[str, Strict()]
+NO_OTHER_KEYS = ConfigDict(extra="forbid", allow_inf_nan=False)
+Text = Annotated[str, Strict()]  # any, such as a path
+
+_LONGEST_WORD = 80  # characters of a text that has a form
+
+
+def form(pattern: str, expected: str) -> AfterValidator:
+    """Makes a check of the form of a text; ``expected`` says what was expected."""
+    whole = re.compile(pattern, re.ASCII)
+
+    def checked(text: str) -> str:
+        if len(text) > _LONGEST_WORD or not whole.fullmatch(text):
+            raise PydanticCustomError("form", "expected {what}", {"what": expected})
+        return text
+
+    return AfterValidator(checked)
+
+
+Word = Annotated[Text, form(r"[A-Za-z]\w*", "a word")]
+Name = Annotated[Text, form(r"[A-Za-z][\w.,\[\]]*", "a name such as motor.B")]
+Unit = Annotated[Text, form(r"[\w./^-]+", "a unit")]
+Digest = Annotated[Text, form("[0-9a-f]{64}", "a SHA-256: 64 hexadecimal digits")]
+Version = Annotated[Text, form(r"[\w.+-]*", "a version")]
+_Guid = Annotated[Text, form(r"[\w{}-]+", "a GUID")]
 Range = tuple[float, float]  # least and largest value
 
 
@@ -24,7 +50,7 @@ class LearnedLog:
     __pydantic_config__ = NO_OTHER_KEYS
 
     file: Text  # path of the log, as given by the user
-    sha256: Text  # SHA-256 of the file; for a folder see files/output.py
+    sha256: Digest  # of the file; for a folder see files/output.py
     ticks: int  # number of ticks of the estimator in the log
     skipped: int  # ticks that were skipped
     phi: Range | None
@@ -38,9 +64,9 @@ class FmuId:
 
     __pydantic_config__ = NO_OTHER_KEYS
 
-    name: Text
-    version: Text
-    guid: Text
+    name: Word
+    version: Version
+    guid: _Guid
 
     @staticmethod
     def of(model: Model) -> FmuId:
@@ -50,16 +76,19 @@ class FmuId:
 
 _Contents = TypeVar("_Contents")
 _AGAIN = "run `sigmahat estimate` again"
+_LONGEST = 10_000_000  # bytes of a file; a usual file has 100 kB
 
 
 def wrong_values(path: Path, error: ValidationError, place: Sequence[str] = ()) -> ValueError:
-    """Creates the error for a file with values that are missing or of a wrong type.
+    """Creates the error for a file with values that are missing, of a wrong type or form.
 
     place  keys above the values that were validated
     """
     first = error.errors()[0]
-    where = ".".join(map(str, (*place, *first["loc"])))
-    return ValueError(f"{path}: damaged: {where}: {first['msg']}; {_AGAIN}")
+    where = cut(".".join(map(str, (*place, *first["loc"]))))
+    said = first["msg"].removeprefix("Value error, ")
+    got = "" if first["type"] == "missing" else f", got {quoted(first['input'])}"
+    return ValueError(f"{path}: damaged: {where}: {said}{got}; {_AGAIN}")
 
 
 @dataclass(frozen=True)
@@ -79,20 +108,20 @@ class Format(Generic[_Contents]):
         """Reads a file. Raises ValueError, which says what was expected and what was received."""
         path = self.path(given)
         try:
-            document: Any = json.loads(path.read_text(encoding="utf-8"))
+            document: Any = json.loads(read_whole(path, _LONGEST))
         except OSError as error:
             hint = f"name the folder or the {self.file} that `sigmahat estimate` wrote"
             raise ValueError(f"{path}: {error.strerror}; {hint}") from error
-        except ValueError as error:  # also for bytes that are no text
+        except (ValueError, RecursionError) as error:  # also for bytes that are no text
             damaged = f"no JSON, or a file that is cut off or damaged ({error})"
             raise self._unexpected(path, damaged) from error
         found = document.get("format") if isinstance(document, dict) else None
         if found != self.name:
-            raise self._unexpected(path, f"format {found!r}" if found else "something else")
+            raise self._unexpected(path, f"format {quoted(found)}" if found else "something else")
         if document.get("version") != self.version:
             raise ValueError(
                 f"{path}: expected version {self.version} of the format, got "
-                f"{document.get('version')!r}; {_AGAIN}"
+                f"{quoted(document.get('version'))}; {_AGAIN}"
             )
         try:
             return TypeAdapter(self.contents).validate_python(document)

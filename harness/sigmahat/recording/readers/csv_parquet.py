@@ -11,6 +11,7 @@ import pyarrow as pa
 import pyarrow.csv
 import pyarrow.parquet
 
+from sigmahat.fmi.quoted import quoted
 from sigmahat.recording.arrow_columns import (
     MISSING,
     first_text,
@@ -59,7 +60,7 @@ class ParquetLog(Log):
                 return self._read_in_parts(name)
             column = self._file.read([name], use_threads=False).column(0)
         except (pa.ArrowException, OSError) as error:
-            raise LogError(f"{self.path}: damaged at column {name!r} ({error})") from error
+            raise LogError(f"{self.path}: damaged at column {quoted(name)} ({error})") from error
         return numbers(self.path, name, column)
 
     def _read_in_parts(self, name: str) -> Array:
@@ -103,8 +104,8 @@ class ParquetLog(Log):
                 longest = pa.compute.max(pa.compute.binary_length(texts)).as_py() or 0
                 if longest * len(batch) > MOST_TEXT:
                     raise LogError(
-                        f"{self.path}: column {field.name!r} has texts of {longest} characters; "
-                        "save the log without this column"
+                        f"{self.path}: column {quoted(field.name)} has texts of {longest} "
+                        "characters; save the log without this column"
                     )
                 batch = batch.set_column(i, field.name, batch.column(i).cast(texts.type))
         return batch
