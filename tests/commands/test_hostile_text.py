@@ -34,8 +34,8 @@ from sigmahat.guess.guess import guess
 from sigmahat.motion import files
 from sigmahat.motion.joints_of_log import Multisine
 from sigmahat.plant_fmu.c_variables import c_table
-from sigmahat.recording.configuration import PORTS, LogError, checked_configuration
-from sigmahat.recording.log import LogInMemory
+from sigmahat.recording.configuration import PORTS, checked_configuration
+from sigmahat.recording.log import LogError, LogInMemory
 from sigmahat.recording.several_joints import JOINTS
 from sigmahat.report import from_log, page
 from sigmahat.result import parameter_file, robot_model
@@ -43,9 +43,9 @@ from sigmahat.result.estimate import JOINTS as TABLE_OF_JOINTS
 from sigmahat.result.estimate_table import REPLAYED
 from sigmahat.result.learned import continue_from, read_learned
 from sigmahat.result.sheet import FORMAT
-from sigmahat.setup_page.background import Look, guessed
+from sigmahat.setup_page.background import guessed
 from sigmahat.setup_page.edits import set_value
-from sigmahat.setup_page.setup import Setup
+from sigmahat.setup_page.setup import Look, Setup
 from sigmahat.setup_page.window import Window
 
 if sys.version_info >= (3, 11):
@@ -148,6 +148,10 @@ def test_exports(kind: str, folder: Path) -> None:
                 assert len(one_line(done)) < LONGEST
                 continue
             exported = (folder / "knee").read_bytes().decode()
+        elif kind == "ssv" and not name.isprintable():
+            with pytest.raises(ValueError, match="expected characters that print"):
+                written(kind, sheet, folder / name)
+            continue
         else:
             exported = written(kind, in_texts(sheet, draw), folder / name)
         files += 1
@@ -170,7 +174,7 @@ def check_page(text: str, known: Page) -> None:
 
 def test_reports(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """One of twenty reports has plots, which take time."""
-    contents, out = page.from_log(folder), folder / "report.html"
+    contents, out = from_log.from_log(folder), folder / "report.html"
     plots = [*contents.panels[:2]]
     known = Page(page._page(replace(contents, panels=plots, answer=()), out))
     beside = from_log._beside_the_table(folder)
@@ -185,7 +189,7 @@ def test_reports(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
                 forged = [in_texts(each, draw) for each in beside[:2]]
                 patch.setattr(from_log, "_beside_the_table", returning((*forged, *beside[2:])))
             try:
-                made = replace(page.from_log(folder), panels=panels, answer=())
+                made = replace(from_log.from_log(folder), panels=panels, answer=())
                 check_page(page._page(made, out), known)
             except ValueError as error:
                 assert len(str(error)) < LONGEST + len(str(folder))
@@ -263,9 +267,16 @@ def setup_of(draw: Random, path: Path) -> Setup:
     setup.guessed(*guessed(setup.log))
     setup.looks = {name: Look(hostile(draw), hostile(draw)) for name in setup.log.columns}
     finding = Finding(
-        *(draw.choice(list(Kind)), Severity.WRONG, hostile(draw), 1.0, hostile(draw)),
-        **{"expected": 2.0, "proposed": hostile(draw), "others": ((hostile(draw), 1.0),)},
-        **{"about": "tau", "row": 1},
+        kind=draw.choice([*Kind]),
+        severity=Severity.WRONG,
+        key=hostile(draw),
+        measured=1.0,
+        unit=hostile(draw),
+        expected=2.0,
+        proposed=hostile(draw),
+        others=((hostile(draw), 1.0),),
+        about="tau",
+        row=1,
     )
     setup.checked = Checked([finding], 1, 1.0)
     setup.problem, setup.message, setup.busy = (hostile(draw) for _ in range(3))
@@ -279,7 +290,7 @@ def shown(setup: Setup) -> Document:
 
 
 def html(document: Document) -> str:
-    return file_html(
+    made: str = file_html(
         document,
         CDN,
         document.title,
@@ -287,6 +298,7 @@ def html(document: Document) -> str:
         template_variables=dict(document.template_variables),
         suppress_callback_warning=True,
     )
+    return made
 
 
 def test_the_page(tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 import hashlib
 import os
 import random
+import re
 import resource
 import shutil
 import stat
@@ -13,6 +14,7 @@ from pathlib import Path
 
 import pytest
 
+import sigmahat
 from controllers import run
 from gate import need
 from sigmahat.files.output import created_folder, output_folder, sha256, write_json, write_whole
@@ -105,6 +107,21 @@ def test_a_full_disk_leaves_the_old_file_whole(
     path.chmod(0o640)
     write(path)
     assert path.stat().st_size >= 5000 and stat.S_IMODE(path.stat().st_mode) == 0o640
+
+
+def test_other_writers_write_into_temporary_folders_only() -> None:
+    package = Path(sigmahat.__file__).parent
+    writes = re.compile(r"\.write_(text|bytes)\(|open\(\s*\"w")
+    found = {
+        path.relative_to(package).as_posix()
+        for path in package.rglob("*.py")
+        if writes.search(path.read_text(encoding="utf-8"))
+    }
+    assert found == {
+        *("files/output.py", "files/tables.py"),
+        "result/estimate_table.py",  # into the output folder of `estimate`
+        *("plant_fmu/plant_codegen.py", "plant_fmu/plant_fmu.py"),  # sources of an FMU
+    }
 
 
 def test_the_bytes_are_on_the_disk_before_the_name(

@@ -286,6 +286,15 @@ def test_wrong_arguments(arguments: str, words: str, knee: Shell) -> None:
         ({"version": 2}, {}, "expected version 1 of the format, got 2"),
         ({"polynomial": None}, {}, "damaged: polynomial"),
         ({"mine": 1}, {}, "damaged: mine"),
+        ({"doubt": "x y"}, {}, "damaged: doubt: expected a word, got 'x y'; run"),
+        ({"misfit": float("inf")}, {}, "misfit: Input should be a finite number, got inf"),
+        ({"parameters": {}}, {}, "parameters: expected the parameter gamma"),
+        (
+            {"configuration": {"file": "a", "sha256": 1000 * "x"}},
+            {},
+            f"expected a SHA-256: 64 hexadecimal digits, got '{79 * 'x'}...; run",
+        ),
+        ({}, {"rls.eta_0[7,0]": 1.0}, "expected a full matrix of coefficients"),
         ({}, {"motor.b": 1.0}, "did you mean 'motor.B'"),
         ({}, {"motor.B": "1; quit"}, "expected Real"),
         ({}, {"method": "Regression"}, "did you mean 'FilteredRegression'"),
@@ -299,6 +308,20 @@ def test_a_sheet_that_does_not_fit_is_refused(
     sheet["start_values"] |= of_start
     Path("knee/joint.json").write_text(json.dumps(sheet | of_sheet))
     assert words in knee.refused("export knee --to ssv")
+
+
+NO_SHEETS = {
+    "lists in lists": 100_000 * "[",
+    "objects in objects": 100_000 * '{"a":',
+    "too many digits": f'{{"version": {5000 * "9"}}}',
+    "too long": 10_000_001 * " ",
+}
+
+
+@pytest.mark.parametrize("text", NO_SHEETS.values(), ids=NO_SHEETS)
+def test_a_file_that_is_no_sheet_is_refused(text: str, shell: Shell) -> None:
+    Path("joint.json").write_text(text)
+    assert "expected the joint.json" in shell.refused("export . --to ssv")
 
 
 def test_a_file_that_exists_is_kept(knee: Shell) -> None:

@@ -9,10 +9,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from sigmahat.files.escape import matlab_comment, modelica_comment, modelica_string, one_line
+from sigmahat.files.escape import matlab_comment, modelica_comment, modelica_string
 from sigmahat.files.output import write_whole
 from sigmahat.files.templates import xml
 from sigmahat.fmi.model import Model
+from sigmahat.fmi.quoted import quoted
 from sigmahat.result.sheet import Sheet, origin
 
 _CURVE = "rls.eta_0["
@@ -40,7 +41,7 @@ def write(sheet: Sheet, model: Model, kind: str, path: Path) -> None:
     """Writes the start values of a sheet for this FMU; kind is a key of KINDS.
 
     Raises ValueError for a start value that does not fit the FMU, and for a file name that cannot
-    be the name of a MATLAB function or a Modelica record.
+    be the name of the contents.
     """
     write_whole(KINDS[kind](sheet, model, list(_starts(sheet, model)), path.stem), path)
 
@@ -68,10 +69,15 @@ def _ssv(sheet: Sheet, model: Model, starts: list[_Start], name: str) -> str:
     numbers, own = ("Real", "Integer"), model.parameters({})
     listed = [s for s in starts if s.variable.type in numbers or own[s.name] != (s.item or s.value)]
     units = {s.variable.unit for s in listed}
+    if not name.isprintable():
+        raise ValueError(
+            f"file name {quoted(name)}: expected characters that print, because the file contains "
+            "its name; choose another name with --out"
+        )
     return xml(
         _TEMPLATE,
         _head(sheet),
-        element=one_line(name),
+        element=name,
         parameters=[(s.variable, s.item or s.text) for s in listed],
         units=[unit for unit in model.description.unitDefinitions if unit.name in units],
     )
@@ -166,8 +172,8 @@ def _identifier(name: str) -> None:
     """Raises ValueError for a name that is not allowed for a MATLAB function or Modelica record."""
     if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name) or name in _RESERVED:
         raise ValueError(
-            f"file name {name!r}: expected letters, digits and _, a letter first, and no keyword "
-            "of the language; choose another name with --out"
+            f"file name {quoted(name)}: expected letters, digits and _, a letter first, and no "
+            "keyword of the language; choose another name with --out"
         )
 
 
