@@ -6,6 +6,7 @@ Results are forged as files, which a schema reads, and also in memory, behind th
 import json
 import os
 import random
+import re
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import fields, is_dataclass, replace
@@ -207,6 +208,8 @@ def test_a_table_of_joints_names_no_other_folder(folder: Path) -> None:
     (inside / "knee").symlink_to(folder)
     names = ["../", "..", "/etc", "a/../..", "C:\\x", "", ".hidden", *map(hostile, draws("joints"))]
     for name in names:
+        if re.fullmatch(r"\w[\w.-]*", name):  # a possible name
+            continue
         quoted = '"' + name.replace('"', '""').encode(errors="replace").decode() + '"'
         (inside / TABLE_OF_JOINTS).write_text(f"joint,setPoint\nknee,1\n{quoted},1\n")
         for command in (["report", "."], ["export", ".", "--to", "sdf", "--force"]):

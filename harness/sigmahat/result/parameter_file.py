@@ -91,7 +91,7 @@ def _matlab(sheet: Sheet, model: Model, starts: list[_Start], name: str) -> str:
         "rls.eta_0 is a matrix, whose indices begin with 1: rls.eta_0(i + 1, j + 1) is",
         "rls.eta_0[i,j] of the FMU. An enumeration is written as the number of its item.",
     ]
-    lines = [f"function p = {name}", f"%{name.upper()} Start values of the estimator."]
+    lines = [f"function p = {name}", f"%{name.upper()} What was learned of a joint."]
     lines += (matlab_comment(f"  {line}") for line in said)
     single, curve = _divided(starts)
     for s in single:
