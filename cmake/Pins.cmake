@@ -1,6 +1,7 @@
 # The target pins writes requirements/*.txt from pyproject.toml. These files pin the versions and hashes of all
 # packages for the build tree. A pinned version does not change as long as pyproject.toml allows it. To get newer
-# versions, remove requirements/test.txt first.
+# versions, remove requirements/test.txt first. requirements/lowest.txt has the lowest versions that pyproject.toml
+# allows, and for what the packages need themselves, the newest.
 set(compile
     ${CMAKE_COMMAND} -E env "UV_CUSTOM_COMPILE_COMMAND=cmake --build build --target pins"
     ${SIGMAHAT_PYTHON} -m uv pip compile --quiet --universal --python-version 3.10
@@ -16,5 +17,7 @@ add_custom_target(
   COMMAND ${consistent} --group coverage -o requirements/coverage.txt
   COMMAND ${consistent} pyproject.toml --group docs -o requirements/docs.txt
   COMMAND ${consistent} --group rivals -o requirements/rivals.txt
+  COMMAND ${compile} --resolution lowest-direct pyproject.toml --all-extras --group test
+          -o requirements/lowest.txt
   WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
   COMMENT "Writing requirements/*.txt" VERBATIM)

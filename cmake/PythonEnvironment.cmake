@@ -3,7 +3,9 @@
 # requirements of pyproject.toml.
 #
 # The environment begins with requirements/reproduce.txt, which the FMUs and Table I need. Targets
-# that need more packages install them when they are built: see sigmahat_add_packages.
+# that need more packages install them when they are built: see sigmahat_add_packages. With
+# SIGMAHAT_LOWEST the environment has the packages of all purposes from requirements/lowest.txt, in the
+# lowest versions that pyproject.toml allows.
 #
 # Sets SIGMAHAT_PYTHON (interpreter), SIGMAHAT_RUN (command that runs one of our modules) and
 # SIGMAHAT_FMU_FOLDER (folder for the FMUs). For an environment in the build tree it also sets
@@ -19,6 +21,7 @@ if(SKBUILD)
   return()
 endif()
 
+option(SIGMAHAT_LOWEST "Install the lowest versions of packages that pyproject.toml allows" OFF)
 find_program(SIGMAHAT_HOST_PYTHON NAMES python3 python REQUIRED)
 execute_process(
   COMMAND ${SIGMAHAT_HOST_PYTHON} -c "import sys; sys.exit(sys.version_info < (3, 10))"
@@ -47,24 +50,32 @@ set(SIGMAHAT_FMU_FOLDER ${SIGMAHAT_VENV}/share/sigmahat)
 set(SIGMAHAT_PIP ${SIGMAHAT_PYTHON} -m pip install --disable-pip-version-check --no-deps
                  --no-compile)
 
+# sigmahat_requirements(PURPOSE FILE) sets the variable FILE to the path of the file with the packages of PURPOSE.
+function(sigmahat_requirements purpose file)
+  if(SIGMAHAT_LOWEST)
+    set(purpose lowest)
+  endif()
+  set(${file} ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/../requirements/${purpose}.txt PARENT_SCOPE)
+endfunction()
+
 # sigmahat_add_packages(PURPOSE) adds the target packages_PURPOSE, which installs the packages of
 # requirements/PURPOSE.txt. The variable packages_PURPOSE then contains the path of a stamp file.
 function(sigmahat_add_packages purpose)
-  set(requirements ${PROJECT_SOURCE_DIR}/requirements/${purpose}.txt)
+  sigmahat_requirements(${purpose} requirements)
   set(installed ${SIGMAHAT_VENV}/packages-${purpose})
   add_custom_command(
     OUTPUT ${installed}
     COMMAND ${SIGMAHAT_PIP} -r ${requirements}
     COMMAND ${CMAKE_COMMAND} -E touch ${installed}
     DEPENDS ${requirements}
-    COMMENT "Installing the packages of requirements/${purpose}.txt"
+    COMMENT "Installing the packages for ${purpose}"
     USES_TERMINAL # shows progress, and lets one pip run at a time
     VERBATIM)
   add_custom_target(packages_${purpose} DEPENDS ${installed})
   set(packages_${purpose} ${installed} PARENT_SCOPE)
 endfunction()
 
-set(requirements ${CMAKE_CURRENT_SOURCE_DIR}/requirements/reproduce.txt)
+sigmahat_requirements(reproduce requirements)
 set(pyproject ${CMAKE_CURRENT_SOURCE_DIR}/pyproject.toml)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${requirements} ${pyproject})
 file(SHA256 ${requirements} wanted)
@@ -83,7 +94,7 @@ if(NOT installed STREQUAL wanted)
     message(FATAL_ERROR "${SIGMAHAT_HOST_PYTHON} cannot make a virtual environment. "
                         "On Debian and Ubuntu: apt-get install python3-venv.")
   endif()
-  foreach(arguments "-r;requirements/reproduce.txt" "--quiet;--no-build-isolation;-e;.")
+  foreach(arguments "-r;${requirements}" "--quiet;--no-build-isolation;-e;.")
     execute_process(
       COMMAND ${SIGMAHAT_PIP} ${arguments}
       WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}

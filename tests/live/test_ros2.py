@@ -56,8 +56,7 @@ def test_joint_states_in_and_estimates_out(
 ) -> None:
     robot = build / "checkers" / "bin" / "ros2-robot"
     if not robot.exists():
-        source = "tests/drivers/ros2_robot"
-        missing("ros2-robot", f"cargo install --root {build / 'checkers'} --path {source}")
+        missing("ros2-robot", ".ci/robot")
     received, pipe = tmp_path / "received", subprocess.PIPE
     command = [*network, str(robot), reliability, "arm_motor", "arm"]
     with (
