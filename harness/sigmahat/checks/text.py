@@ -26,6 +26,8 @@ DOUBTS = {
 }
 """Items of the FMU output `doubt`, with the key to check first and a description."""
 
+_OF_PORTS = (Kind.PORT, Kind.LARGEST_TORQUE)  # what follows from unit and side of all ports
+
 
 def summary(checked: Checked) -> str:
     """Formats all findings as text that fits on one screen."""
@@ -38,10 +40,10 @@ def summary(checked: Checked) -> str:
 
 def _lines(found: Sequence[Finding]) -> Iterator[str]:
     """Makes one line of each finding, and one of what the configuration says of all ports."""
-    ports = [_port(each) for each in found if each.kind is Kind.PORT]
+    ports = [_what(each) for each in found if each.kind in _OF_PORTS]
     if ports:
         yield f"ports: {'; '.join(ports)}"
-    yield from (sentence(each) for each in found if each.kind is not Kind.PORT)
+    yield from (sentence(each) for each in found if each.kind not in _OF_PORTS)
 
 
 def nothing_found(checked: Checked) -> str:
@@ -155,8 +157,8 @@ _SENTENCES: Mapping[Kind, str] = {
     Kind.INERTIA: _INERTIA,
     Kind.TORQUE_SCALE: f"{_INERTIA}, as if the torque were geared twice or not at all",
     Kind.OTHER_ROBOT: "{value:.4g} is the start value, of another robot",
-    Kind.LARGEST_TORQUE: "unit and side make the largest torque at the link {measured}, at a "
-    "deformation of up to {given:.3g} rad: compare with the data sheet of the joint",
+    Kind.LARGEST_TORQUE: "so the largest torque at the link is {measured}, the largest deformation "
+    "{given:.3g} rad: compare with the data sheet of the joint",
     Kind.SIZE: "the {about} is {measured}, of usual joints at most {expected}",
     Kind.STEP: "the values of {about} change in steps of {measured}, the configured encoder has "
     "{expected}",
