@@ -69,10 +69,10 @@ class Model:
         """Returns the value as a number for FMI. Raises ValueError if the value does not fit."""
         variable = self.variable(name)
         if variable.type == "Enumeration" and isinstance(value, str):
-            items = {item: number for number, item in self.items(name).items()}
-            if value not in items:
-                raise ValueError(unknown(f"value of {self.name}.{name}", value, items))
-            return items[value]
+            numbers = {item: number for number, item in self.items(name).items()}
+            if value not in numbers:
+                raise ValueError(unknown(f"value of {self.name}.{name}", value, numbers))
+            return numbers[value]
         is_flag = isinstance(value, bool) and variable.type != "Boolean"
         if isinstance(value, str) or is_flag:
             raise ValueError(f"{self.name}.{name}: expected {variable.type}, got {quoted(value)}")
@@ -83,7 +83,12 @@ class Model:
         except (TypeError, ValueError, OverflowError):  # a list or a date, nan, too many digits
             whole = None
         expected = variable.type
-        if whole is not None and whole == value:
+        if variable.type == "Enumeration":
+            items = self.items(name)
+            if whole is not None and whole == value and whole in items:
+                return whole
+            expected = f"one of {', '.join(items.values())}"
+        elif whole is not None and whole == value:
             if -_TOO_LARGE <= whole < _TOO_LARGE:
                 return whole
             expected += " of 32 bits"

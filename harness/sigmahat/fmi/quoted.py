@@ -18,3 +18,8 @@ def quoted(value: object) -> str:
 def cut(text: str) -> str:
     """Cuts a text after 80 characters."""
     return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}..."
+
+
+def cause(error: BaseException) -> str:
+    """Returns what an error of a library says in one line, with little text of the file."""
+    return cut(" ".join(str(error).split()) or type(error).__name__)

@@ -3,9 +3,12 @@
 from collections.abc import Iterable
 from difflib import get_close_matches
 
-from sigmahat.fmi.quoted import quoted
+from sigmahat.fmi.quoted import cut, quoted
 
 _LONGEST = 200  # characters of a name for which similar names are looked for
+_MOST_LISTED = (
+    150  # names that exist; the estimator has 100 parameters, a log can have more columns
+)
 
 _RENAMED = {
     "MatchedFilter": "FilteredRegression",
@@ -31,7 +34,9 @@ def unknown(kind: str, name: str, existing: Iterable[str]) -> str:
     similar = get_close_matches(name, names, n=3, cutoff=0.6) if short else []
     message = f"unknown {kind} {quoted(name)}"
     if similar:
-        message += "; did you mean " + " or ".join(map(repr, similar)) + "?"
+        message += "; did you mean " + " or ".join(map(quoted, similar)) + "?"
     if not similar or len(names) <= 20:
-        message += f" (there are: {', '.join(names) or 'none'})"
+        listed = ", ".join(map(cut, names[:_MOST_LISTED])) or "none"
+        more = len(names) - _MOST_LISTED
+        message += f" (there are: {listed}{f', and {more} more' if more > 0 else ''})"
     return message

@@ -15,7 +15,7 @@ from pydantic_core import ErrorDetails, PydanticCustomError
 
 from sigmahat.files import toml_file
 from sigmahat.fmi.model import Value
-from sigmahat.fmi.quoted import quoted
+from sigmahat.fmi.quoted import cause, quoted
 from sigmahat.fmi.unknown_name import unknown
 from sigmahat.recording import several_joints
 from sigmahat.recording.deformation import missing_position
@@ -134,6 +134,13 @@ class Configuration:
         """The ports by input of the estimator; that of phi gives the position that follows."""
         follows = missing_position(self.ports)
         return {follows if name == "phi" and follows else name: p for name, p in self.ports.items()}
+
+    @property
+    def columns(self) -> list[str]:
+        """Names of the columns of the log that are used, each once."""
+        ports = self.ports.values()
+        named = [self.time.column, *(p.column for p in ports), *(p.time for p in ports)]
+        return [*dict.fromkeys(name for name in named if name)]
 
     def need_ports(self, modality: str) -> None:
         """Raises LogError if a port is missing that the modality needs."""
@@ -277,7 +284,7 @@ def read_document(path: Path) -> tomlkit.TOMLDocument:
         hint = "write one with `sigmahat init LOG`, or name another file"
         raise LogError(f"{path}: {error.strerror}; {hint}") from error
     except ValueError as error:
-        raise LogError(f"{path}: not TOML ({error})") from error
+        raise LogError(f"{path}: not TOML ({cause(error)})") from error
 
 
 _NO_PORTS = "no [ports.*]; `sigmahat init LOG` writes a file to start from"

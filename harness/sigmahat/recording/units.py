@@ -26,6 +26,7 @@ _LONGEST = 40  # characters of a unit
 _SMALL = "\u2070\u00b9\u00b2\u00b3\u2074-\u2079"  # digits that are written as exponents
 _TOWER = re.compile(rf"[\d){_SMALL}]\s*(\*\*|\^|[{_SMALL}])|(\*\*|\^)\s*[+-]?\s*(\d\d|[^\d\s+-])")
 """Pattern of a power of a number, or a long exponent: to compute 9**9**9 would take too long."""
+_MOST_COUNTS = 1e15  # per turn of the joint; an encoder with a gear has 1e9
 
 
 def seconds(unit: str) -> float:
@@ -43,7 +44,15 @@ def counts_of_joint(name: str, port: Port) -> float | None:
         return port.counts_per_turn * abs(port.gear_ratio)
     if port.step is None or PORTS[name] != "rad":
         return None
-    return round(2 * math.pi / abs(factor(name, port) * port.step)) * abs(port.gear_ratio)
+    step = abs(factor(name, port) * port.step)
+    # Of a step that is far smaller than any encoder has, the quotient would be infinite.
+    counts = 2 * math.pi / step if step else math.inf
+    if not counts * abs(port.gear_ratio) < _MOST_COUNTS:
+        raise LogError(
+            f"ports.{name}.step: expected at most {_MOST_COUNTS:g} steps per turn, got a step of "
+            f"{port.step:g}; fill in the step in the unit of the column"
+        )
+    return round(counts) * abs(port.gear_ratio)
 
 
 def factor(name: str, port: Port) -> float:

@@ -11,7 +11,7 @@ import pyarrow as pa
 import pyarrow.csv
 import pyarrow.parquet
 
-from sigmahat.fmi.quoted import quoted
+from sigmahat.fmi.quoted import cause, quoted
 from sigmahat.recording.arrow_columns import (
     MISSING,
     first_text,
@@ -43,7 +43,9 @@ class ParquetLog(Log):
             schema, metadata = self._file.schema_arrow, self._file.metadata
             flat = [field.name for field in schema if _is_flat(field.type)]
         except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
-            raise LogError(f"{path}: incomplete Parquet file ({error}); copy it again") from error
+            raise LogError(
+                f"{path}: incomplete Parquet file ({cause(error)}); copy it again"
+            ) from error
         check_columns(path, len(flat))
         check_numbers(path, metadata.num_rows)
         self._texts = {field.name for field in schema if _is_text(field.type)}
@@ -60,7 +62,9 @@ class ParquetLog(Log):
                 return self._read_in_parts(name)
             column = self._file.read([name], use_threads=False).column(0)
         except (pa.ArrowException, OSError) as error:
-            raise LogError(f"{self.path}: damaged at column {quoted(name)} ({error})") from error
+            raise LogError(
+                f"{self.path}: damaged at column {quoted(name)} ({cause(error)})"
+            ) from error
         return numbers(self.path, name, column)
 
     def _read_in_parts(self, name: str) -> Array:
@@ -94,7 +98,7 @@ class ParquetLog(Log):
             for batch in file.iter_batches(rows, columns=list(names), use_threads=False):
                 yield self._with_texts(batch)
         except (pa.ArrowException, OSError) as error:
-            raise LogError(f"{self.path}: damaged ({error})") from error
+            raise LogError(f"{self.path}: damaged ({cause(error)})") from error
 
     def _with_texts(self, batch: pa.RecordBatch) -> pa.RecordBatch:
         """Replaces dictionaries of a batch by the texts, if the texts are not too long."""
@@ -184,7 +188,7 @@ class CsvLog(Log):
     def _reason(self, error: pa.ArrowInvalid) -> str:
         """Says why the rows cannot be read."""
         if self._wrong is None:
-            return f"{error}; the end of the file may be missing"
+            return f"{cause(error)}; the end of the file may be missing"
         row = self._wrong
         return (
             f"the row {row.text[:_SHOWN]!r} has {row.actual_columns} values, the other rows "
