@@ -11,6 +11,7 @@ header of 128 bytes, each variable has a tag of two integers, kind and number of
 The data of a variable are a sequence of elements, again with tags.
 """
 
+import math
 import struct
 import zlib
 from collections.abc import Collection, Iterator
@@ -22,6 +23,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sigmahat.fmi.quoted import cause, quoted
 from sigmahat.recording.limits import check_bytes, check_columns, check_numbers
 from sigmahat.recording.log import LogError, LogInMemory
 
@@ -110,7 +112,9 @@ def _is_plain(path: Path) -> bool:
 
 
 _MOST_COLUMNS = 256  # limit of one matrix; a larger matrix is an image, not a log
-_DEEPEST = 32  # largest number of nested groups of HDF5
+_DEEPEST = 32  # largest number of nested groups of HDF5, and of links to links
+_SMALL = 380_000  # bytes of a chunk of HDF5 that unpacks to at most 400 MB
+_MOST_STEPS = 100_000  # from object to object; a group can contain itself many times
 
 Named = Iterator[tuple[str, NDArray[np.generic]]]
 
@@ -123,7 +127,7 @@ def read_mat(path: Path) -> LogInMemory:
     try:
         variables = scipy.io.loadmat(path, struct_as_record=False)
     except Exception as error:  # any: for a damaged file scipy raises many kinds
-        raise LogError(f"{path}: damaged MAT file ({error}); save it again") from error
+        raise LogError(f"{path}: damaged MAT file ({cause(error)}); save it again") from error
     units: dict[str, str] = {}
     own = (
         _fields(path, name, value, units)
@@ -175,40 +179,94 @@ def read_hdf5(path: Path) -> LogInMemory:
     """Reads an HDF5 file, or a MAT file of version 7.3. Raises LogError as read_mat does."""
     import h5py
 
-    units: dict[str, str] = {}
-
-    def walk(group: h5py.Group, above: str, depth: int = 0) -> Named:
-        if depth > _DEEPEST:
-            raise LogError(f"{path}: expected at most {_DEEPEST} levels of groups, got more")
-        for name in group:
-            if name.startswith("#"):  # the contents of cells, in files of MATLAB
-                continue
-            link = group.get(name, getlink=True)
-            if isinstance(link, h5py.ExternalLink):
-                raise _elsewhere(path, f"{above}{name}", link.filename)
-            item = group.get(name)
-            if isinstance(item, h5py.Group):
-                yield from walk(item, f"{above}{name}.", depth + 1)
-            elif not isinstance(item, h5py.Dataset) or item.shape is None:
-                continue  # a link to nothing, a type, or no values
-            elif item.is_virtual or item.external:
-                others = item.virtual_sources() if item.is_virtual else item.external
-                raise _elsewhere(path, f"{above}{name}", str(others[0][0 if item.external else 1]))
-            elif item.dtype.names and item.ndim == 1:
-                check_bytes(path, item.size * item.dtype.itemsize)
-                for field in item.dtype.names:
-                    yield from _columns(path, f"{above}{name}.{field}", item[field])
-            else:
-                units[f"{above}{name}"] = _attribute(item, _UNITS)
-                yield from _columns(path, f"{above}{name}", item)
-
+    reader = _Hdf5(path)
     try:
         with h5py.File(path, "r") as file:
-            return _log(path, walk(file, ""), units)
+            return _log(path, reader.columns(file, ""), reader.units)
     except LogError:
         raise
     except (OSError, RuntimeError, KeyError, ValueError, TypeError) as error:
-        raise LogError(f"{path}: incomplete HDF5 file ({error}); copy it again") from error
+        raise LogError(f"{path}: incomplete HDF5 file ({cause(error)}); copy it again") from error
+
+
+class _Hdf5:
+    """Goes through an HDF5 file, without other files to which it refers."""
+
+    def __init__(self, path: Path) -> None:
+        self.units: dict[str, str] = {}  #: From the attributes, by name of the data set.
+        self._path = path
+        self._steps = 0
+
+    def columns(self, group: Any, above: str, depth: int = 0) -> Named:
+        import h5py
+
+        if depth > _DEEPEST:
+            raise LogError(f"{self._path}: expected at most {_DEEPEST} levels of groups, got more")
+        for part in group:
+            name = f"{above}{part}"
+            item = None if part.startswith("#") else self._item(group, part, name)
+            if isinstance(item, h5py.Group):
+                yield from self.columns(item, f"{name}.", depth + 1)
+            elif isinstance(item, h5py.Dataset) and item.shape is not None:
+                yield from self._of_data_set(item, name)
+
+    def _item(self, group: Any, path_inside: str, name: str, links: int = 0) -> Any:
+        """The object at a path; None for a link to nothing.
+
+        h5py itself would follow a soft link that leads through an external one.
+        """
+        import h5py
+
+        item = group.file if path_inside.startswith("/") else group
+        for part in path_inside.split("/"):
+            self._count_step(links)
+            if part in ("", ".") or item is None:
+                continue
+            link = item.get(part, getlink=True) if isinstance(item, h5py.Group) else None
+            if isinstance(link, h5py.ExternalLink):
+                raise _elsewhere(self._path, name, link.filename)
+            if isinstance(link, h5py.SoftLink):
+                item = self._item(item, link.path, name, links + 1)
+            else:
+                item = None if link is None else item[part]
+        return item
+
+    def _count_step(self, links: int) -> None:
+        self._steps += 1
+        if self._steps > _MOST_STEPS or links > _DEEPEST:
+            raise LogError(
+                f"{self._path}: expected at most {_MOST_STEPS} groups and data sets, and "
+                f"{_DEEPEST} links to links, got more; save only the columns of one joint"
+            )
+
+    def _of_data_set(self, item: Any, name: str) -> Named:
+        if item.is_virtual:
+            raise _elsewhere(self._path, name, item.virtual_sources()[0].file_name)
+        if item.external:
+            raise _elsewhere(self._path, name, item.external[0][0])
+        if item.chunks is not None:
+            self._check_chunks(item, name)
+        if item.dtype.names and item.ndim == 1:
+            check_bytes(self._path, item.size * item.dtype.itemsize)
+            for field in item.dtype.names:
+                yield from _columns(self._path, f"{name}.{field}", item[field])
+        else:
+            self.units[name] = _attribute(item, _UNITS)
+            yield from _columns(self._path, name, item)
+
+    def _check_chunks(self, item: Any, name: str) -> None:
+        """Raises LogError for a data set with chunks that take too much memory: HDF5 reads a chunk
+        as a whole, and unpacks it to any size."""
+        size = math.prod(item.chunks) * item.dtype.itemsize
+        check_bytes(self._path, size)
+        packed = []
+        item.id.chunk_iter(lambda chunk: packed.append(chunk) if chunk.size > _SMALL else None)
+        for chunk in packed:
+            _, content = item.id.read_direct_chunk(chunk.chunk_offset)
+            if len(_unpacked(content, size)) > size:
+                raise LogError(
+                    f"{self._path}: {quoted(name)} is larger than its chunks; copy it again"
+                )
 
 
 def _attribute(item: Any, names: tuple[str, ...]) -> str:
@@ -223,7 +281,7 @@ def _attribute(item: Any, names: tuple[str, ...]) -> str:
 
 def _elsewhere(path: Path, name: str, file: str) -> LogError:
     return LogError(
-        f"{path}: {name!r} lies in another file, {file!r}, and only the log is read; "
+        f"{path}: {quoted(name)} lies in another file, {quoted(file)}, and only the log is read; "
         "copy the values into it"
     )
 
