@@ -102,10 +102,10 @@ def for_each_joint(
     estimator is not built, and errors of the job.
     """
     from sigmahat.recording.configuration import joints_of, read_document
-    from sigmahat.recording.readers.formats import open_log
+    from sigmahat.recording.readers.formats import need_log
 
     need_fmus("StiffnessEstimator")
-    open_log(log)  # a missing log is reported before a missing configuration
+    need_log(log)  # a missing log is reported before a missing configuration
     joints = [joint] if joint else joints_of(read_document(config), config)
     if len(joints) == 1:
         return {joints[0]: _of_joint(log, config, joints[0], job, "")}
@@ -125,7 +125,8 @@ def _of_joint(
     from sigmahat.recording.readers.formats import open_log
 
     try:
-        return job(open_log(log), read_configuration(config, joint))
+        configuration = read_configuration(config, joint)
+        return job(open_log(log, configuration.columns), configuration)
     except LogError as error:
         raise LogError(f"{place}{error}") from error
 

@@ -92,7 +92,7 @@ def motion(
         configuration = None if config is None else read_configuration(config, joint)
         joints = of_limits(limits)
         if after is not None and configuration is not None:
-            joints = known.of_log(open_log(after), configuration, start)
+            joints = known.of_log(open_log(after, configuration.columns), configuration, start)
         sensors = known.sensors(configuration, limits)
         with common.progress("Trying motions", design.trials()) as bar:
             found = design.design(joints, limits, sensors, seconds, bar.update)

@@ -63,7 +63,7 @@ class Endpoints:
 
     def replay(self, log: Path) -> Source:
         """The used columns of a recorded log, in real time. Raises LogError if one is missing."""
-        opened = open_log(log)
+        opened = open_log(log, self._session.columns)
         used: dict[str, tuple[float, list[str]]] = {}
         for joint in self._session.joints:
             for name, port in joint.ports.items():

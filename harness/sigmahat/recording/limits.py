@@ -14,14 +14,21 @@ _NUMBERS, _SMALL = 15_000_000, 10_000_000  # allowed numbers in a file up to thi
 _TOGETHER = 2  # factor of the limit if all columns are in memory at the same time
 _NUMBERS_PER_BYTE = 3  # limit for further bytes; without compression, at most 1 is possible
 _BYTES = 400_000_000  # limit for all columns of a file that is read as a whole
+_MESSAGES, _BYTES_PER_MESSAGE = 1_000_000, 10  # in a bag of any size, and for further bytes
+_DATA, _DATA_PER_BYTE = 200_000_000, 8  # bytes of the messages of a bag that are decoded
+_UNPACKED, _UNPACKED_PER_BYTE = 1_000_000_000, 30  # [bytes]; a bag is unpacked in pieces
 MOST_TEXT = 100_000_000  # characters of a column of text at a time
+
+
+def _size(path: Path) -> int:
+    """Returns the bytes of a file, or of the files in the folder of a bag."""
+    files = path.iterdir() if path.is_dir() else (path,)
+    return sum(file.stat().st_size for file in files)
 
 
 def _most_numbers(path: Path) -> int:
     """Returns the allowed number of values in a column of a file, by the size of the file."""
-    files = path.iterdir() if path.is_dir() else (path,)  # the folder of a bag
-    size = sum(file.stat().st_size for file in files)
-    return _NUMBERS + _NUMBERS_PER_BYTE * max(0, size - _SMALL)
+    return _NUMBERS + _NUMBERS_PER_BYTE * max(0, _size(path) - _SMALL)
 
 
 def check_together(path: Path, numbers: int) -> None:
@@ -60,4 +67,31 @@ def check_bytes(path: Path, size: int) -> None:
         raise LogError(
             f"{path}: expected at most {most / 1e6:.0f} MB of data in a file of this size, got "
             f"{size / 1e6:.0f} MB; save it without compression, or in parts"
+        )
+
+
+def check_messages(path: Path, messages: int) -> None:
+    """Raises LogError for more messages in a bag than its size allows."""
+    if messages > _MESSAGES and messages > (most := _size(path) // _BYTES_PER_MESSAGE):
+        raise LogError(
+            f"{path}: expected at most {max(most, _MESSAGES)} messages in a bag of this size, got "
+            "more; record fewer topics, or without compression"
+        )
+
+
+def check_unpacked(path: Path, size: int) -> None:
+    """Raises LogError if a bag is far larger [bytes] without compression."""
+    if size > _UNPACKED and size > (most := _UNPACKED_PER_BYTE * _size(path)):
+        raise LogError(
+            f"{path}: expected at most {max(most, _UNPACKED) / 1e6:.0f} MB in a bag of this size "
+            "without compression, got more; record it without compression"
+        )
+
+
+def check_data(path: Path, size: int) -> None:
+    """Raises LogError if the messages that are to be decoded are too many bytes."""
+    if size > _DATA and size > (most := _DATA_PER_BYTE * _size(path)):
+        raise LogError(
+            f"{path}: expected at most {max(most, _DATA) / 1e6:.0f} MB of messages with numbers in "
+            "a bag of this size, got more; record fewer topics, or without compression"
         )
