@@ -57,7 +57,7 @@ def read_bag(path: Path, wanted: Collection[str] | None = None) -> LogInMemory:
     if profile not in ("ros2", None):
         raise LogError(
             f"{path}: the messages of this MCAP file are not of ROS 2 (its profile is "
-            f"{quoted(profile)}, expected 'ros2'); save them as a CSV file, one column for each number"
+            f"{quoted(profile)}, expected 'ros2'); save them as CSV, a column for each number"
         )
     from sigmahat.recording.readers.bag_files import BagFiles
 
