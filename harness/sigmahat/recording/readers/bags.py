@@ -15,7 +15,7 @@ from contextlib import closing
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,6 +59,8 @@ def read_bag(path: Path, wanted: Collection[str] | None = None) -> LogInMemory:
             f"{path}: the messages of this MCAP file are not of ROS 2 (its profile is "
             f"{quoted(profile)}, expected 'ros2'); save them as CSV, a column for each number"
         )
+    from rosbags.typesys import Stores, get_typestore
+
     from sigmahat.recording.readers.bag_files import BagFiles
 
     def is_wanted(topic: str) -> bool:
@@ -79,7 +81,8 @@ def read_bag(path: Path, wanted: Collection[str] | None = None) -> LogInMemory:
         raise
     except Exception as error:  # any: for a damaged file the libraries raise many kinds
         raise LogError(f"{path}: incomplete ROS 2 bag ({cause(error)}); copy it again") from error
-    arrays = _columns(path, topics, start or 0)
+    decoder = Decoder({**get_typestore(Stores.LATEST).fielddefs, **_types(path, topics)})
+    arrays = _columns(path, topics, start or 0, decoder)
     if wanted is not None and not arrays.keys() >= set(wanted):
         return read_bag(path)
     if not arrays:
@@ -133,10 +136,10 @@ class _Columns:
 
 
 def _columns(
-    path: Path, topics: dict["Topic", _Recorded], start: int
+    path: Path, topics: dict["Topic", _Recorded], start: int, decoder: Decoder
 ) -> dict[str, NDArray[np.float64]]:
     """Reads the numbers of all topics, and removes the messages."""
-    columns, decoder = _Columns(path, start), Decoder(_types(path, topics))
+    columns = _Columns(path, start)
     names = [topic.name for topic in topics]
     for topic in list(topics):
         if names.count(topic.name) > 1:
@@ -160,10 +163,10 @@ def _columns(
 
 
 def _types(path: Path, topics: Iterable["Topic"]) -> Types:
-    """The types of messages that these topics define, and those of ROS 2 itself."""
-    from rosbags.typesys import Stores, get_types_from_idl, get_types_from_msg, get_typestore
+    """The types of messages that these topics define."""
+    from rosbags.typesys import get_types_from_idl, get_types_from_msg
 
-    types = dict(get_typestore(Stores.LATEST).fielddefs)
+    types: dict[str, Any] = {}
     length = 0
     for topic in topics:
         length += len(topic.definition)
