@@ -38,7 +38,7 @@ def untimed(text: str) -> str:
 
 
 def recorded(folder: Path) -> Path:
-    (recording,) = (folder / "out").glob("*.parquet")
+    (recording,) = (folder / "out").glob("*.csv")
     return recording
 
 

@@ -48,7 +48,7 @@ def test_csv_with_a_line_of_names_or_without() -> None:
         (b'{"t": [1]}', "expected one of"),
         (b'{"t": ' + b"9" * 5000 + b"}", "expected a whole JSON object"),
         (b'{"t":' + b"[" * 60_000, "expected a whole JSON object"),
-        (b'{"t":' + b"[" * 500 + b"]" * 500 + b"}", "at most 8 levels"),
+        (b'{"":' * 500 + b"1" + b"}" * 500, "at most 8 levels"),
         (b" " * (LONGEST + 1), f"expected at most {LONGEST} bytes, got {LONGEST + 1}"),
     ],
 )
@@ -58,8 +58,18 @@ def test_what_is_no_message_is_said(message: bytes, expected: str) -> None:
 
 
 def test_values_without_names() -> None:
-    with pytest.raises(ValueError, match="expected first a line that names columns, got b'1,2"):
+    expected = "expected the names of the columns first, over UDP by --columns, got b'1,2"
+    with pytest.raises(ValueError, match=expected):
         Decoder(WANTED).columns(b"1,2,3\n")
+
+
+def test_a_datagram_does_not_rename_the_columns_of_other_senders() -> None:
+    decoder = Decoder(WANTED, WANTED)
+    with pytest.raises(ValueError, match=r"t: expected a number, got 'torque'"):
+        decoder.values(b"torque,x,t\n")
+    with pytest.raises(ValueError, match=r"expected 3 cells, got b't,x"):
+        decoder.values(b"t,x\n")
+    assert decoder.values(b"1,2,3\n") == {"t": 1, "arm/motor[1]": 2, "/torque": 3}
 
 
 @given(st.binary(max_size=200))

@@ -89,7 +89,7 @@ def test_joint_states_in_and_estimates_out(
     ages = [float(each[each.index("data_age") + 1]) for each in lines["estimate"]]
     with_data = [each for each, age in zip(lines["estimate"], ages, strict=True) if age == 0]
     assert len(with_data) < len(ages)
-    (recording,) = (tmp_path / "out").glob("*.parquet")
+    (recording,) = (tmp_path / "out").glob("*.csv")
     found = estimated(recording)
     ticks = len(found.t)
     assert ticks == 1500 and "messages: 1500 read" in printed

@@ -1,9 +1,14 @@
 """`sigmahat open` in a browser, from a log without configuration to the results."""
 
 import http.client
+import os
 import socket
+import stat
+import sys
+import time
 from pathlib import Path
 from urllib.parse import urlsplit
+from urllib.request import url2pathname
 
 import pytest
 import tomlkit
@@ -13,6 +18,7 @@ from checked_logs import knee_log
 from command_line import Shell
 from recorded_logs import write_log
 from served_page import Hand, served
+from sigmahat.setup_page import server
 
 
 def by_hand(text: str) -> str:
@@ -97,7 +103,7 @@ def test_nothing_is_lost_when_the_log_vanishes_and_at_the_end(tmp_path: Path) ->
             assert hand.value("motor.B") == "0.0002"
         status, out, err = page.interrupt()
     assert (status, err) == (0, "")
-    assert "No browser was found" in out
+    assert "No browser was opened" in out
     assert "sigmahat open knee.parquet --config knee.draft.toml" in out
     assert kept.read_text() == before
     draft = (tmp_path / "knee.draft.toml").read_text()
@@ -108,7 +114,10 @@ def test_nothing_is_lost_when_the_log_vanishes_and_at_the_end(tmp_path: Path) ->
 
 def test_only_who_has_the_address_is_served(tmp_path: Path) -> None:
     write_log(knee_log(), tmp_path / "knee.csv")
-    with served("knee.csv", folder=tmp_path) as page:
+    browser, argument = tmp_path / "browser", tmp_path / "argument"
+    browser.write_text(f'#!/bin/sh\necho "$1" > {argument}.part; mv {argument}.part {argument}\n')
+    browser.chmod(0o755)
+    with served("knee.csv", folder=tmp_path, browser=str(browser)) as page:
         where = urlsplit(page.address)
         assert where.hostname == "127.0.0.1"
         assert len(where.path) > 20
@@ -127,6 +136,38 @@ def test_only_who_has_the_address_is_served(tmp_path: Path) -> None:
             "Sec-WebSocket-Key": "dGhlIHNhbXBsZSBub25jZQ==",
         }
         assert status(f"{where.path}/ws", Origin="http://example.org", **upgrade) == 403
+        until = time.monotonic() + 60
+        while not argument.exists() and time.monotonic() < until:
+            time.sleep(0.01)  # the browser is a process of its own
+        link = argument.read_text().strip()
+        assert where.path not in link  # every user of the computer sees the arguments
+        leads = Path(url2pathname(urlsplit(link).path))
+        assert page.address in leads.read_text()
+        assert stat.S_IMODE(leads.stat().st_mode) == 0o600
+        page.interrupt()
+        assert not leads.exists()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no RLIMIT_NOFILE")
+def test_connections_wait_for_file_handles(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The event loop neither spins nor fails while there are none."""
+    import resource
+
+    monkeypatch.setattr(server, "_RETRY", 0.0)
+    with socket.socket() as opened:
+        opened.bind(("127.0.0.1", 0))
+        opened.listen()
+        listening = server._Listening(fileno=opened.detach())
+    with listening, socket.create_connection(listening.getsockname()) as client:
+        free, limits = os.dup(client.fileno()), resource.getrlimit(resource.RLIMIT_NOFILE)
+        os.close(free)
+        resource.setrlimit(resource.RLIMIT_NOFILE, (free, limits[1]))
+        try:
+            with pytest.raises(BlockingIOError):
+                listening.accept()
+        finally:
+            resource.setrlimit(resource.RLIMIT_NOFILE, limits)
+        listening.accept()[0].close()
 
 
 @pytest.mark.parametrize(

@@ -93,6 +93,9 @@ def live(
     common.answer("\n".join(lines), {"messages": values, "recordings": [str(f) for f in files]})
     if inbox.failure is not None:
         raise click.ClickException(f"the messages from {name} have ended: {inbox.failure}")
+    if session.not_written:
+        files_and_reasons = [f"{file} ({why})" for file, why in session.not_written.items()]
+        raise click.ClickException(f"not written, or only in part: {', '.join(files_and_reasons)}")
     if not inbox.read and inbox.wrong:
         expected = f"JSON, or CSV with the columns {', '.join(session.columns)}"
         raise click.ClickException(

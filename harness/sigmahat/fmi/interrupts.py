@@ -5,10 +5,19 @@ import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
+ENDS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
+"""Signals that end a program which runs until it is told to; Windows has no SIGHUP."""
+
 
 @contextmanager
 def handling(handler: Callable[..., object], *numbers: int) -> Iterator[None]:
-    """Inside the block, the handler is called for these signals. Only for the main thread."""
+    """Inside the block, the handler is called for these signals. Only for the main thread.
+
+    SIGHUP stays without effect if it was, as under `nohup`.
+    """
+    hang_up = getattr(signal, "SIGHUP", None)
+    if hang_up in numbers and signal.getsignal(hang_up) == signal.SIG_IGN:
+        numbers = tuple(number for number in numbers if number != hang_up)
     before = {number: signal.signal(number, handler) for number in numbers}
     try:
         yield

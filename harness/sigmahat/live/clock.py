@@ -64,6 +64,11 @@ class Clock:
         return self._in_order >= _STARTED
 
     @property
+    def last(self) -> float:
+        """Time of the last sample in order, as the sender counts it [s]."""
+        return self.now + (self.shift or 0) * self.seconds
+
+    @property
     def newest(self) -> float:
         """Time of the last sample far off, as the sender counts it [s]."""
         return self._stray + (self.shift or 0) * self.seconds

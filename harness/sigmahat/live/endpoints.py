@@ -12,7 +12,7 @@ from contextlib import suppress
 from functools import cached_property, partial
 from itertools import groupby
 from pathlib import Path
-from threading import Thread
+from threading import BoundedSemaphore, Thread
 from typing import TYPE_CHECKING, BinaryIO
 
 import numpy as np
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 
 _LOOPBACK, _FOXGLOVE = "127.0.0.1", "8765"
 _BUFFER = 1 << 22  # size of the receive buffer [bytes]
+_MOST = 64  # TCP senders at the same time
 _Address = tuple[str, int]
 _Decoders = Callable[[], Decoder]
 
@@ -128,11 +129,12 @@ def _udp(address: _Address, decoders: _Decoders) -> Source:
     bound = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     bound.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _BUFFER)
     bound.bind(address)
-    columns = decoders().columns
+    decoder = decoders()
 
     def read(inbox: Inbox) -> None:
         while True:
-            inbox.add(partial(columns, bound.recv(LONGEST + 1)), can_wait=False)
+            message = bound.recv(LONGEST + 1)
+            inbox.add(partial(decoder.values, message), len(message), can_wait=False)
 
     return read
 
@@ -140,17 +142,32 @@ def _udp(address: _Address, decoders: _Decoders) -> Source:
 def _tcp(address: _Address, decoders: _Decoders) -> Source:
     """Creates a source of lines from any number of TCP senders. Raises OSError as _udp does."""
     server = socket.create_server(address)
+    places = BoundedSemaphore(_MOST)
 
     def read(inbox: Inbox) -> None:
         while True:
-            connection, _ = server.accept()
-            Thread(target=one, args=[inbox, connection], daemon=True).start()
+            try:
+                connection, _ = server.accept()
+            except ConnectionError:  # the sender has gone meanwhile
+                continue
+            if places.acquire(blocking=False):
+                Thread(target=one, args=[inbox, connection], daemon=True).start()
+            else:
+                connection.close()
+                inbox.add(_no_place)
 
     def one(inbox: Inbox, connection: socket.socket) -> None:
-        with connection, connection.makefile("rb") as file:
-            _lines(file, inbox, decoders())
+        try:
+            with connection, connection.makefile("rb") as file:
+                _lines(file, inbox, decoders())
+        finally:
+            places.release()
 
     return read
+
+
+def _no_place() -> Columns:
+    raise ValueError(f"expected at most {_MOST} senders at the same time, got one more")
 
 
 def _read_stdin(decoders: _Decoders, inbox: Inbox) -> None:
@@ -161,7 +178,7 @@ def _lines(file: BinaryIO, inbox: Inbox, decoder: Decoder) -> None:
     """Puts each line of a file into the inbox; a line that is too long is cut off."""
     with suppress(OSError):  # the connection is broken
         while line := file.readline(LONGEST + 1):
-            inbox.add(partial(decoder.columns, line))
+            inbox.add(partial(decoder.columns, line), len(line))
             while len(line) > LONGEST and not line.endswith(b"\n"):
                 line = file.readline(LONGEST + 1)
 

@@ -133,6 +133,19 @@ class Unreadable(Event):
 
 
 @dataclass(frozen=True, kw_only=True)
+class NotWritten(Event):
+    """A file cannot be written, such as the recording on a full disk."""
+
+    kind: ClassVar[str] = "not_written"
+    what: str  # the file
+    reason: str
+
+    @property
+    def in_words(self) -> str:
+        return f"not written: {self.what} ({self.reason}); the estimates go on"
+
+
+@dataclass(frozen=True, kw_only=True)
 class SamplesApart(Event):
     """The samples of a joint are too far apart for its ticks."""
 

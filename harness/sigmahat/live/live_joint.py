@@ -151,18 +151,23 @@ class LiveJoint:
         own = self.ports[port].port.time if port else None
         return own or self.configuration.time.column or ""
 
-    def end(self, recording: Path, digest: str, learned: Path) -> Iterator[News]:
-        """Yields the last news of a recording, and writes the state of the estimator.
+    def end(self, recorded: tuple[Path, str] | None) -> Iterator[News]:
+        """Yields the last news before a restart, or the end, of the sender.
 
-        recording, digest  recorded file and its SHA-256; learned  file for the state
+        recorded  recorded file and its SHA-256; None: nothing was recorded
         """
         if self._start is not None:
             yield from self._run(self._start, is_end=True)
-        counts = self._ticks, self._skipped
-        self._logs.append(LearnedLog(str(recording), digest, *counts, *self._used.values()))
+        if recorded is not None:
+            file, digest = recorded
+            counts = self._ticks, self._skipped
+            self._logs.append(LearnedLog(str(file), digest, *counts, *self._used.values()))
         self.skipped_of_all += self._skipped
         self._begin()
-        write_learned(self._estimator, self._logs, learned)
+
+    def write_learned(self, file: Path) -> None:
+        """Writes the state of the estimator. Raises OSError if the file cannot be written."""
+        write_learned(self._estimator, self._logs, file)
 
     def go_on(self) -> None:
         """Continues after the end of a recording; filters start again with the next sample."""

@@ -1,13 +1,12 @@
 """Runs the on-line loop: passes messages to the session, and what it finds to the sinks."""
 
-import signal
 import time
 from collections.abc import Callable, Sequence
 from functools import partial
 from queue import Empty, Full, Queue
 from typing import NamedTuple
 
-from sigmahat.fmi.interrupts import handling
+from sigmahat.fmi.interrupts import ENDS, handling
 from sigmahat.live.events import Event, SamplesApart, Unreadable
 from sigmahat.live.live_joint import News
 from sigmahat.live.messages import Columns
@@ -16,7 +15,8 @@ from sigmahat.live.silence import Silence
 
 _IDLE = 0.1  # [s] until a signal is seen
 _FIRST = 100  # number of messages until their times are looked at
-_MOST = 20_000  # messages that wait
+_MOST = 1 << 25  # bytes of all messages that wait
+_OVERHEAD = 1000  # bytes that a message needs besides its contents
 
 Reader = Callable[[], Columns | None]
 """Gives the columns of a message; None for a message without columns. Raises ValueError if the
@@ -28,10 +28,11 @@ class Message(NamedTuple):
     arrival: int  # [ns] since 1970; of a replayed log, the time in the log
     received: float  # by the clock that never jumps [s]
     read: Reader
+    size: int = 0  # memory [bytes]
 
 
 class Inbox(Queue[Message]):
-    """Queue of received messages."""
+    """Queue of received messages, whose size is the memory of all of them."""
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         """clock  gives the time of this computer [s], which never jumps"""
@@ -41,11 +42,15 @@ class Inbox(Queue[Message]):
         """Numbers of messages: read, not readable, and lost because the inbox was full."""
         self.failure: Exception | None = None  # why the source has ended before its data did
 
-    def add(self, read: Reader, can_wait: bool = True, arrival: int | None = None) -> None:
-        """can_wait  whether the sender waits for a place; else the message may be lost"""
+    def add(
+        self, read: Reader, size: int = 0, can_wait: bool = True, arrival: int | None = None
+    ) -> None:
+        """size  of the contents [bytes]; can_wait  whether the sender waits for a place; else the
+        message may be lost
+        """
         arrival = time.time_ns() if arrival is None else arrival
         try:
-            self.put(Message(arrival, self.now(), read), can_wait)
+            self.put(Message(arrival, self.now(), read, size + _OVERHEAD), can_wait)
         except Full:
             self.dropped += 1
 
@@ -56,6 +61,23 @@ class Inbox(Queue[Message]):
     def _ended(self, failure: Exception | None) -> None:
         self.failure = failure
         raise EOFError
+
+    # As subclasses of Queue may, these methods define how much is in it.
+    def _init(self, maxsize: int) -> None:
+        self._bytes = 0
+        super()._init(maxsize)
+
+    def _qsize(self) -> int:
+        return self._bytes
+
+    def _put(self, item: Message) -> None:
+        self._bytes += item.size
+        super()._put(item)
+
+    def _get(self) -> Message:
+        item = super()._get()
+        self._bytes -= item.size
+        return item
 
 
 Source = Callable[[Inbox], None]
@@ -102,8 +124,8 @@ class Loop:
         self._tell(told)
 
     def wait(self) -> None:
-        """Says what is to be said if no message waits."""
-        self._tell(self._silence.passed(self._inbox.now()))
+        """Says what is to be said, and saves what is to be saved, if no message waits."""
+        self._tell([*self._silence.passed(self._inbox.now()), *self._session.save()])
 
     def end(self) -> None:
         self._tell(self._silence.rest(self._session.close(), self._inbox.now()))
@@ -124,14 +146,14 @@ class Loop:
 
 
 def watch(session: Session, inbox: Inbox, sinks: Sequence[Sink]) -> None:
-    """Runs the estimators until the last message, or until Ctrl-C or SIGTERM.
+    """Runs the estimators until the last message, or until a signal that ends a program.
 
     An event shows the first message that cannot be read; all such messages are counted.
     """
     loop = Loop(session, inbox, sinks)
     # A second signal does not interrupt the writing of files.
     stopped: list[int] = []
-    with handling(lambda number, _: stopped.append(number), signal.SIGINT, signal.SIGTERM):
+    with handling(lambda number, _: stopped.append(number), *ENDS):
         while not stopped:
             try:
                 message = inbox.get(timeout=_IDLE)

@@ -10,6 +10,7 @@ import math
 import os
 import re
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from functools import partial
 from itertools import groupby
 from typing import Any
@@ -36,6 +37,8 @@ _SECOND = 1_000_000_000
 _RARELY = 1.0  # [s] between diagnostics
 _OK, _WARN, _STALE = 0, 1, 3  # levels of diagnostic_msgs/DiagnosticStatus
 _LARGEST_DOMAIN, _MOST_JOINTS, _AT_ONCE = 232, 1000, 1000
+# The library keeps as many messages as a reader asks for, of any size unless it is told.
+_LIMITS = "<Internal><MaxSampleSize>128 kB</MaxSampleSize></Internal>"
 _INTERFACES = {
     "stiffness": "sigma",
     "stiffness_std": "sigma_std",
@@ -43,7 +46,8 @@ _INTERFACES = {
     "torque_std": "tau_e_std",
     "confident": "confident",
 }
-_WHOLE = Qos(Policy.Reliability.Reliable(duration(milliseconds=100)), Policy.History.KeepLast(100))
+# No estimate waits for a reader that does not keep up.
+_WHOLE = Qos(Policy.Reliability.Reliable(duration(seconds=0)), Policy.History.KeepLast(100))
 # Readers accept messages of reliable and of best-effort writers.
 _ANY = Qos(Policy.Reliability.BestEffort, Policy.History.KeepLast(1000))
 
@@ -80,6 +84,9 @@ class Ros2:
             raise ValueError(
                 f"ROS_DOMAIN_ID: expected a number from 0 to {_LARGEST_DOMAIN}, got {text!r}"
             )
+        # The settings of the user come later, so they win.
+        own = os.environ.get("CYCLONEDDS_URI")
+        os.environ["CYCLONEDDS_URI"] = f"{_LIMITS},{own}" if own else _LIMITS
         self._domain = DomainParticipant(int(text))
         self._wanted: frozenset[str] = frozenset()
         self._first: int | None = None  # time of the first message [ns], zero of the columns
@@ -110,7 +117,8 @@ class Ros2:
                 wake.wait(duration(seconds=1))
                 for name, reader in readers.items():
                     for message in _messages(reader):
-                        inbox.add(partial(self._columns, name, message), can_wait=False)
+                        columns = partial(self._columns, name, message)
+                        inbox.add(columns, _memory(message), can_wait=False)
 
         return read
 
@@ -153,7 +161,8 @@ class Ros2:
         def send(news: Sequence[News]) -> None:
             nonlocal said
             for event in (each for each in news if isinstance(each, Event)):
-                diagnostics.write(_Diagnostics(self._header(event.t), [_status_of_event(event)]))
+                status = _status_of_event(event)
+                _write(diagnostics, _Diagnostics(self._header(event.t), [status]))
             ticks = [each for each in news if isinstance(each, Estimated)]
             for t, group in groupby(ticks, key=lambda tick: tick.t):
                 at_once = list(group)
@@ -161,10 +170,10 @@ class Ros2:
                 values = [_values(each) for each in at_once]
                 interfaces = [_Interfaces(list(each), list(each.values())) for each in values]
                 names = [each.joint for each in at_once]
-                estimates.write(_DynamicJointState(header, names, interfaces))
+                _write(estimates, _DynamicJointState(header, names, interfaces))
                 if abs(t - said) >= _RARELY:
                     said = t
-                    diagnostics.write(_Diagnostics(header, [_status(e) for e in at_once]))
+                    _write(diagnostics, _Diagnostics(header, [_status(e) for e in at_once]))
 
         return send
 
@@ -190,6 +199,20 @@ def _messages(reader: Any) -> Iterator[Any]:
             return
         if isinstance(taken[0], _JointState):  # not the end of a writer
             yield taken[0]
+
+
+def _memory(message: Any) -> int:
+    """Returns about the memory of a JointState message, or of an error in its place [bytes]."""
+    if isinstance(message, Exception):
+        return 0
+    numbers = sum(len(getattr(message, field)) for field in _fields)
+    return 32 * numbers + sum(64 + len(name) for name in message.name)
+
+
+def _write(writer: Any, message: Any) -> None:
+    """Sends a message. It is lost if a reader does not keep up, which must not stop the others."""
+    with suppress(core.DDSException):
+        writer.write(message)
 
 
 def _values(tick: Estimated) -> dict[str, float]:

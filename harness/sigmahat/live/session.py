@@ -5,75 +5,22 @@ continue with another recording, as `sigmahat estimate --start-from` does.
 """
 
 import copy
-import math
-from collections.abc import Mapping
-from concurrent.futures import Future, ThreadPoolExecutor
 from datetime import datetime, timezone
 from pathlib import Path
-from typing import Any
 
-import numpy as np
-import pyarrow as pa
-import pyarrow.parquet as pq
 import tomlkit
-from numpy.typing import NDArray
 
-from sigmahat.files.output import sha256, write_whole
 from sigmahat.live.clock import Clock
-from sigmahat.live.events import SenderRestarted
+from sigmahat.live.events import NotWritten, SenderRestarted
 from sigmahat.live.live_joint import LiveJoint, News
 from sigmahat.live.messages import Columns
+from sigmahat.live.recording import Recording
 from sigmahat.recording import several_joints as of_file
 from sigmahat.recording.configuration import joints_of, read_configuration, read_document
 from sigmahat.result.learned import LEARNED, read_learned
 
 ARRIVAL = "arrival"  # column for messages without a stamp: time of arrival [ns] since 1970
-_ROWS = 1 << 16  # rows of a row group; each group needs 20 kB of memory until the file ends
-_MISSING = -(2**63)
-
-# With the first array, pyarrow imports an installed pandas. No sample should wait for this import.
-pa.array(np.empty(0))
-
-
-class _Recording:
-    """A Parquet file with a row for each message; missing values are empty."""
-
-    def __init__(self, path: Path, columns: Mapping[str, bool]) -> None:
-        """Makes the file, which is complete after close(). Raises OSError if it cannot be written.
-
-        columns  for each column, whether it has integers that a float64 does not hold
-        """
-        self.path = path
-        self._missing = {n: _MISSING if whole else math.nan for n, whole in columns.items()}
-        self._kinds = np.dtype([(n, "i8" if whole else "f8") for n, whole in columns.items()])
-        kinds = [(n, pa.int64() if whole else pa.float64()) for n, whole in columns.items()]
-        self._writer = pq.ParquetWriter(path, pa.schema(kinds))
-        self._thread = ThreadPoolExecutor(1)  # so that no sample waits for the disk
-        self._written: Future[Any] = self._thread.submit(dict)  # the last job, done at once
-        self._rows, self._table = 0, np.empty(_ROWS, self._kinds)
-
-    def add(self, row: Columns) -> None:
-        """Adds the next message. Raises OSError if an earlier message could not be written."""
-        self._table[self._rows] = tuple(row.get(n, none) for n, none in self._missing.items())
-        self._rows += 1
-        if self._rows == _ROWS:
-            self._flush()
-
-    def close(self) -> None:
-        self._flush()
-        self._thread.shutdown()
-        self._written.result()
-        self._writer.close()
-
-    def _flush(self) -> None:
-        self._written.result()
-        self._written = self._thread.submit(self._write, self._table[: self._rows])
-        self._rows, self._table = 0, np.empty(_ROWS, self._kinds)
-
-    def _write(self, table: NDArray[Any]) -> None:
-        columns = {n: np.ascontiguousarray(table[n]) for n in self._missing}
-        arrays = [pa.array(each, mask=each == self._missing[n]) for n, each in columns.items()]
-        self._writer.write_table(pa.Table.from_arrays(arrays, schema=self._writer.schema))
+_MOST = 100  # recordings; a sender can start again as often as it likes
 
 
 class Session:
@@ -94,8 +41,10 @@ class Session:
         ports = [port.port.column for joint in self.joints for port in joint.ports.values()]
         self.columns = [name for name in dict.fromkeys([*self.clocks, *ports]) if name]
         """Columns of the messages that are used."""
-        self.recordings: list[Path] = []  # complete files of recordings
-        self._recording: _Recording | None = None
+        self.recordings: list[Path] = []  # files of recordings that have ended
+        self.not_written: dict[str, str] = {}  # files that are incomplete, and why
+        self._is_running = False  # whether samples have arrived since the last restart
+        self._recording: Recording | None = None
 
     def take(self, columns: Columns, arrival: int) -> list[News]:
         """Computes the estimates at all ticks that a message allows, in the order of the joints.
@@ -123,38 +72,71 @@ class Session:
                 kept.pop(name, None)
         if not times:
             return []
-        if self._recording is None:
-            now = datetime.now(timezone.utc).strftime("%Y-%m-%dT%H-%M-%S-%f")
-            kinds = {name or ARRIVAL: bool(clock.shift) for name, clock in self.clocks.items()}
-            kinds |= {name: False for name in self.columns if name not in kinds}
-            self._recording = _Recording(self._out / f"{now}.parquet", kinds)
-        self._recording.add({**kept, ARRIVAL: arrival} if "" in times else kept)
-        return [each for joint in self.joints for each in joint.take(columns, times)]
+        told = [] if self._is_running else self._begin_recording()
+        if self._recording is not None:
+            self._recording.add({**kept, ARRIVAL: arrival} if "" in times else kept)
+        told += self.save()
+        return [*told, *(each for joint in self.joints for each in joint.take(columns, times))]
+
+    def save(self) -> list[News]:
+        """Writes the messages of the last second to the recording, if it is over.
+
+        To be called also while no message arrives. Returns an event if the recording has to end.
+        """
+        try:
+            if self._recording is not None:
+                self._recording.save()
+        except OSError as error:
+            return [self._failed(self._recording.path, error)]
+        return []
+
+    def close(self) -> list[News]:
+        return self._end_recording()
+
+    def _begin_recording(self) -> list[News]:
+        self._is_running = True
+        if len(self.recordings) == _MOST:
+            what, reason = "further recordings", f"the sender has started again {_MOST} times"
+            return [] if what in self.not_written else [self._not_written(what, reason)]
+        now = datetime.now(timezone.utc).strftime("%Y-%m-%dT%H-%M-%S-%f")
+        kinds = {name or ARRIVAL: bool(clock.shift) for name, clock in self.clocks.items()}
+        kinds |= {name: False for name in self.columns if name not in kinds}
+        configuration = tomlkit.dumps(self._configuration())
+        self._recording = Recording(self._out / f"{now}.csv", kinds, configuration)
+        return []
 
     def _end_recording(self) -> list[News]:
-        """Completes the recording, writes estimator states, and returns the remaining news.
-
-        Raises OSError if a file cannot be written.
-        """
-        if self._recording is None:
+        """Completes the recording, writes estimator states, and returns the remaining news."""
+        if not self._is_running:
             return []
-        path = self._recording.path
-        self._recording.close()
-        self._recording = None
-        write_whole(tomlkit.dumps(self._configuration()), path.with_suffix(".toml"))
-        self.recordings.append(path)
-        digest = sha256(path)
+        self._is_running = False
         found: list[News] = []
+        recording, self._recording = self._recording, None
+        if recording is not None:
+            try:
+                recording.close()
+            except OSError as error:
+                found.append(self._failed(recording.path, error))
+            self.recordings.append(recording.path)
         for joint in self.joints:
-            folder = self._out / joint.configuration.joint
-            folder.mkdir(exist_ok=True)
-            found += joint.end(path, digest, folder / LEARNED.file)
+            found += joint.end(recording and (recording.path, recording.digest))
+            file = self._out / joint.configuration.joint / LEARNED.file
+            try:
+                file.parent.mkdir(exist_ok=True)
+                joint.write_learned(file)
+            except OSError as error:
+                found.append(self._failed(file, error))
         for clock in self.clocks.values():
             clock.restart()
         return found
 
-    def close(self) -> list[News]:
-        return self._end_recording()
+    def _failed(self, file: Path, error: OSError) -> NotWritten:
+        return self._not_written(str(file), error.strerror or str(error))
+
+    def _not_written(self, what: str, reason: str) -> NotWritten:
+        self.not_written[what] = reason
+        t = max(clock.last for clock in self.clocks.values())
+        return NotWritten(t=t, what=what, reason=reason)
 
     def _configuration(self) -> tomlkit.TOMLDocument:
         """Creates a configuration with which `estimate` repeats the estimates of a recording."""

@@ -4,6 +4,7 @@ import shutil
 import sys
 import time
 from collections.abc import Sequence
+from contextlib import suppress
 
 import click
 
@@ -39,7 +40,8 @@ def terminal() -> Sink:
             lines += [line[:width] for line in rows] if is_terminal else rows
         # In a terminal, the lines replace the last ones of the joints.
         above = f"\033[{shown}F\033[J" if is_terminal and shown else ""
-        click.echo(above + "\n".join(lines), err=True)
+        with suppress(OSError):  # the terminal is closed
+            click.echo(above + "\n".join(lines), err=True)
         shown = len(last) if has_lines else 0
 
     return show

@@ -1,14 +1,19 @@
 """Serves the page on this computer alone, until Ctrl-C."""
 
+import errno
 import logging
 import secrets
-import signal
+import socket
+import tempfile
 import threading
+import time
 import warnings
 import webbrowser
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import tomlkit
 from bokeh.application import Application
@@ -24,14 +29,14 @@ from bokeh.util.warnings import BokehUserWarning
 from tornado.httpserver import HTTPServer
 from tornado.ioloop import IOLoop
 
-from sigmahat.fmi.interrupts import handling
+from sigmahat.fmi.interrupts import ENDS, handling
 from sigmahat.recording.log import Log
 from sigmahat.setup_page.background import Jobs
 from sigmahat.setup_page.setup import Setup
 from sigmahat.setup_page.window import Window
 
 _HOST = "127.0.0.1"
-_ENDS = ("SIGINT", "SIGTERM", "SIGHUP")  # signals that end the page; Windows has no SIGHUP
+_RETRY = 0.1  # [s] until a connection is accepted again, without file handles
 
 
 class _Small(BokehTornado):  # type: ignore[misc] # types of Bokeh are not checked
@@ -70,14 +75,14 @@ def serve(
         token, port, lambda window: Window(setup, window, jobs.start, jobs.estimate)
     )
     address = f"http://{_HOST}:{port}/{token}"
-    ends = [getattr(signal, name) for name in _ENDS if hasattr(signal, name)]
-    with handling(lambda *_: server.io_loop.add_callback_from_signal(server.io_loop.stop), *ends):
+    with handling(lambda *_: server.io_loop.add_callback_from_signal(server.io_loop.stop), *ENDS):
         server.start()
         if document is not None:
             setup.start_from(document)
         say(f"{log.path} is open until you press Ctrl-C. Address:\n{address}")
-        threading.Thread(target=partial(_open, address, say), daemon=True).start()
-        server.io_loop.start()
+        with _link(address, path.parent) as link:
+            threading.Thread(target=partial(_open, link, say), daemon=True).start()
+            server.io_loop.start()
     server.stop()
     return setup.write_draft()
 
@@ -103,10 +108,50 @@ def _listen(token: str, port: int, window: Callable[[Document], object]) -> tupl
         use_index=False,
     )
     http = HTTPServer(tornado)
-    http.add_sockets(sockets)
+    listening = [_Listening(fileno=each.detach()) for each in sockets]
+    for each in listening:
+        each.setblocking(False)
+    http.add_sockets(listening)
     return BaseServer(IOLoop.current(), tornado, http), port
 
 
-def _open(address: str, say: Callable[[str], object]) -> None:
-    if not webbrowser.open(address):
-        say("No browser was found: open the address in a browser on this computer.")
+class _Listening(socket.socket):
+    """A socket whose connections wait while the process has no file handle for them.
+
+    The event loop would ask for them again and again, and log each time that it gets none.
+    """
+
+    def accept(self) -> tuple[socket.socket, Any]:
+        try:
+            return super().accept()
+        except OSError as error:
+            if error.errno not in (errno.EMFILE, errno.ENFILE):
+                raise
+            time.sleep(_RETRY)
+            raise BlockingIOError from error
+
+
+@contextmanager
+def _link(address: str, folder: Path) -> Iterator[str]:
+    """Yields the address of a file that leads a browser to an address, until the end of the block.
+
+    Other users of this computer see the arguments of a browser, and must not see the token. They
+    cannot read the file. It is in the folder of the user's files, because some browsers may read no
+    others. Yields "" if the folder cannot be written to.
+    """
+    try:
+        handle, name = tempfile.mkstemp(".html", "sigmahat-open-", folder)
+    except OSError:
+        yield ""
+        return
+    try:
+        with open(handle, "w", encoding="utf-8") as file:
+            file.write(f'<meta http-equiv="refresh" content="0; url={address}">\n')
+        yield Path(name).absolute().as_uri()
+    finally:
+        Path(name).unlink(missing_ok=True)
+
+
+def _open(link: str, say: Callable[[str], object]) -> None:
+    if not link or not webbrowser.open(link):
+        say("No browser was opened: open the address in a browser on this computer.")
