@@ -1,4 +1,4 @@
-"""The recording of a stream is readable whenever the process ends, and no disk stops an estimate."""
+"""A recording is readable whenever the process ends, and no disk stops an estimate."""
 
 import errno
 import json
@@ -67,7 +67,7 @@ def test_what_is_lost_when_the_process_is_killed(
         live.take(each, 0)
     written(live)
     (file,) = tmp_path.glob("*.csv")
-    left = shutil.copy(file, tmp_path / "left.csv")
+    left = Path(shutil.copy(file, tmp_path / "left.csv"))
     shutil.copy(file.with_suffix(".toml"), tmp_path / "left.toml")
     live.close()
     times = open_log(left).read("t")

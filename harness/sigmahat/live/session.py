@@ -83,9 +83,10 @@ class Session:
 
         To be called also while no message arrives. Returns an event if the recording has to end.
         """
+        if self._recording is None:
+            return []
         try:
-            if self._recording is not None:
-                self._recording.save()
+            self._recording.save()
         except OSError as error:
             return [self._failed(self._recording.path, error)]
         return []
@@ -112,14 +113,16 @@ class Session:
         self._is_running = False
         found: list[News] = []
         recording, self._recording = self._recording, None
+        recorded = None
         if recording is not None:
             try:
                 recording.close()
             except OSError as error:
                 found.append(self._failed(recording.path, error))
             self.recordings.append(recording.path)
+            recorded = recording.path, recording.digest
         for joint in self.joints:
-            found += joint.end(recording and (recording.path, recording.digest))
+            found += joint.end(recorded)
             file = self._out / joint.configuration.joint / LEARNED.file
             try:
                 file.parent.mkdir(exist_ok=True)

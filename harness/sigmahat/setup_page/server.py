@@ -2,6 +2,7 @@
 
 import errno
 import logging
+import os
 import secrets
 import socket
 import tempfile
@@ -145,7 +146,7 @@ def _link(address: str, folder: Path) -> Iterator[str]:
         yield ""
         return
     try:
-        with open(handle, "w", encoding="utf-8") as file:
+        with os.fdopen(handle, "w", encoding="utf-8") as file:
             file.write(f'<meta http-equiv="refresh" content="0; url={address}">\n')
         yield Path(name).absolute().as_uri()
     finally:
