@@ -7,12 +7,13 @@ import random
 import shutil
 import signal
 import socket
-import subprocess
 import sys
 import time
-from contextlib import ExitStack
+from collections.abc import Callable
+from functools import partial
 from io import FileIO
 from itertools import chain
+from multiprocessing import get_context
 from pathlib import Path
 from threading import Thread
 from types import SimpleNamespace
@@ -21,6 +22,7 @@ import numpy as np
 import pytest
 
 from sender import CONFIGURATION, T, Viewer, estimated, free_port, messages, running
+from sigmahat.cli import main
 from sigmahat.live import recording, session
 from sigmahat.live.events import NotWritten
 from sigmahat.live.live_joint import Estimated
@@ -139,25 +141,47 @@ def test_a_sender_cannot_fill_a_folder_with_files(
     assert sum(isinstance(each, Estimated) for each in found) > 300
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="signals, and limits of a file")
+@pytest.mark.skipif(sys.platform != "linux", reason="processes that begin as a copy of this one")
 @pytest.mark.complete
 @pytest.mark.slow("fifty programs for each signal, in real time")
 @pytest.mark.parametrize("number", ["SIGINT", "SIGTERM", "SIGHUP", "SIGQUIT", "SIGKILL"])
 def test_signals_at_random_times(number: str, tmp_path: Path) -> None:
-    chance, lost = random.Random(number), []
-    for batch in range(10):
-        with ExitStack() as programs:
-            for i in range(5):
-                folder, port = tmp_path / f"{batch}-{i}", free_port()
-                folder.mkdir()
-                process = programs.enter_context(running(folder, "--from", f"udp:{port}"))
-                sender = Sender(port, process, getattr(signal, number), chance.uniform(0.5, 6))
-                programs.callback(sender.join)
-                sender.start()
-                lost.append((folder, sender))
-    seconds = [(each.sent - rows_of(folder)) * Sender.period for folder, each in lost]
-    print(number, max(seconds), "s lost at most of", len(seconds))
-    assert max(seconds) <= (LOST if number in ("SIGQUIT", "SIGKILL") else 0.1)
+    chance = random.Random(number)
+    lost = []
+    for batch in range(5):
+        folders = [tmp_path / f"{batch}-{i}" for i in range(10)]
+        senders = [killed(each, getattr(signal, number), chance.uniform(1, 6)) for each in folders]
+        for folder, sender in zip(folders, senders, strict=True):
+            sender.join()
+            lost.append((sender.sent - rows_of(folder)) * sender.period)
+    print(number, max(lost), "s of the recording lost at most, in", len(lost), "programs")
+    assert max(lost) <= (LOST if number in ("SIGQUIT", "SIGKILL") else 0.1)
+
+
+def killed(folder: Path, number: int, duration: float) -> "Sender":
+    """The command in a process that is a copy of this one, which a signal ends."""
+    folder.mkdir()
+    (folder / "arm.toml").write_text(CONFIGURATION)
+    port, log = free_port(), folder / "log"
+    process = get_context("fork").Process(target=run_live, args=[folder, port])
+    process.start()
+    until = time.monotonic() + 60
+    while "Ctrl-C" not in (log.read_text() if log.exists() else ""):
+        assert time.monotonic() < until
+        time.sleep(0.01)
+    assert process.pid is not None
+    sender = Sender(port, partial(os.kill, process.pid, number), process.join, duration)
+    sender.start()
+    return sender
+
+
+def run_live(folder: Path, port: int) -> None:
+    os.chdir(folder)
+    with (folder / "log").open("wb") as log:
+        os.dup2(log.fileno(), 1)
+        os.dup2(log.fileno(), 2)
+    sys.stdout, sys.stderr = open(1, "w", closefd=False), open(2, "w", 1, closefd=False)  # noqa: SIM115
+    main(["live", "arm.toml", "--from", f"udp:{port}", "--out", "out"])
 
 
 def rows_of(folder: Path) -> int:
@@ -171,10 +195,14 @@ class Sender(Thread):
     period = 0.02  # [s]
 
     def __init__(
-        self, port: int, process: subprocess.Popen[str], number: int, duration: float
+        self,
+        port: int,
+        kill: Callable[[], object],
+        wait: Callable[[], object],
+        duration: float,
     ) -> None:
         super().__init__()
-        self._port, self._process, self._number, self._duration = port, process, number, duration
+        self._port, self._kill, self._wait, self._duration = port, kill, wait, duration
         self.sent = 0
 
     def run(self) -> None:
@@ -184,8 +212,8 @@ class Sender(Thread):
                 time.sleep(max(begin + self.sent * self.period - time.monotonic(), 0.0))
                 sender.sendto(json.dumps(each).encode(), ("127.0.0.1", self._port))
                 self.sent += 1
-        self._process.send_signal(self._number)
-        self._process.communicate(timeout=60)
+        self._kill()
+        self._wait()
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="limits of a file")
@@ -196,7 +224,7 @@ def test_a_program_goes_on_when_its_files_are_full(tmp_path: Path) -> None:
     limit = ["prlimit", "--fsize=100000"]
     options = ["--from", f"udp:{port}", "--to", f"udp:{viewer.port}"]
     with running(tmp_path, *options, inside=limit) as process:
-        sender = Sender(port, process, signal.SIGTERM, 100.0)
+        sender = Sender(port, process.terminate, process.communicate, 12.0)
         sender.period = 0.004
         sender.start()
         sender.join()
