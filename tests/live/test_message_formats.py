@@ -63,6 +63,15 @@ def test_values_without_names() -> None:
         Decoder(WANTED).columns(b"1,2,3\n")
 
 
+def test_a_damaged_line_of_names_does_not_rename_the_columns() -> None:
+    decoder = Decoder(WANTED)
+    assert decoder.columns(b"t,arm/motor[1],torque\n") is None
+    with pytest.raises(ValueError, match="expected 3 cells, got b't"):
+        decoder.columns(b"t\n")
+    assert decoder.columns(b"torque,t,x,arm/motor[1]\n") is None
+    assert decoder.columns(b"1,2,3,4\n") == {"/torque": 1, "t": 2, "arm/motor[1]": 4}
+
+
 def test_a_datagram_does_not_rename_the_columns_of_other_senders() -> None:
     decoder = Decoder(WANTED, WANTED)
     with pytest.raises(ValueError, match=r"t: expected a number, got 'torque'"):

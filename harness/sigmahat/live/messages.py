@@ -35,7 +35,8 @@ class Decoder:
         """
         if not _is_json(message) and message.endswith(b"\n") and len(message) <= LONGEST:
             names = self._named(message.decode(errors="replace").split(","))
-            if any(names):
+            # A line that names fewer columns than before is damaged.
+            if any(names) and set(names) >= set(filter(None, self._csv)):
                 self._csv = names
                 return None
         return self.values(message)
