@@ -52,6 +52,16 @@ def test_a_stiff_joint_with_a_torque_sensor_needs_no_motor() -> None:
     assert found.headline.endswith("confident")
 
 
+def test_a_spring_on_a_test_bench_needs_no_position_of_a_motor() -> None:
+    """GIVEN a fixed motor, and a configuration as `init` writes it: without a port of theta."""
+    joint = stiff_joint()
+    log = {**joint, "q": np.asarray(joint["q"]) - 0.5 * np.sin(2 * np.pi * 0.4 * joint["t"])}
+    text = "\n".join(line for line in SENSOR.splitlines() if "theta" not in line)
+    found = identify(LogInMemory(Path("log"), log), in_memory(text))
+    assert found.phi == pytest.approx(1.2e-3, rel=0.05)
+    assert found.tau_variance**0.5 == pytest.approx(0.03, rel=0.3)
+
+
 def test_the_zero_of_a_spring_that_hardens_is_within_its_interval() -> None:
     """GIVEN a zero at 3 mrad of a spring that is several times stiffer at its ends."""
     plant = {**KNEE, "spring.k_1": 400.0, "spring.k_3": 2e6, "encoder.q_offset": 0.003}

@@ -233,10 +233,11 @@ def _center(zero: Quantity | None, pieces: Sequence[Signals]) -> float:
 
 def _check(configuration: Configuration, is_of_spring: bool, torque_constant: bool) -> None:
     """Raises LogError if a port is missing, or if tau must be a current and is not."""
-    torques = ["tau_e_sensor"] if is_of_spring else ["tau"]
+    # The spring alone needs no motor: where it is fixed, as on a test bench, theta is 0.
+    needed = ["q", "tau_e_sensor"] if is_of_spring else ["theta", "q", "tau"]
     if torque_constant:
-        torques.append("tau_e_sensor")
-    for name in ("theta", "q", *torques):
+        needed.append("tau_e_sensor")
+    for name in needed:
         if name not in configuration.inputs:
             why = "; a torque constant needs a measured torque" if torque_constant else ""
             raise LogError(f"{configuration.path}: identify needs [ports.{name}]{why}; add it")
