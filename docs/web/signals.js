@@ -7,6 +7,8 @@ const ANGLES = {
   rad: { factor: 1 },
   deg: { factor: TURN / 360 },
   mrad: { factor: 1e-3 },
+  arcmin: { factor: TURN / 21600 },
+  arcsec: { factor: TURN / 1296000 },
   turn: { factor: TURN },
   counts: { per: "counts per turn", factor: (number) => TURN / number },
 };

@@ -175,7 +175,7 @@ def test_reset_forgets_and_keeps_what_was_tuned(z: Samples) -> None:
         ("Paper2011", "parameters of one joint or more, got 'Paper2011'"),
         ([None], r"parameters of one joint or more, got \[None\]"),
         ({"rls.n": float("inf")}, r"rls\.n: expected Integer, got inf"),
-        ({"method": None}, "method: expected Enumeration, got None"),
+        ({"method": None}, "method: expected one of Paper2011, FilteredRegression, got None"),
     ],
 )
 def test_parameters_that_do_not_fit(parameters: Any, message: str) -> None:

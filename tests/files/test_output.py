@@ -119,6 +119,7 @@ def test_other_writers_write_into_temporary_folders_only() -> None:
     }
     assert found == {
         *("files/output.py", "files/tables.py"),
+        "recording/readers/bag_files.py",  # an unpacked bag
         "result/estimate_table.py",  # into the output folder of `estimate`
         *("plant_fmu/plant_codegen.py", "plant_fmu/plant_fmu.py"),  # sources of an FMU
     }

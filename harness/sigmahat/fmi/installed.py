@@ -42,10 +42,13 @@ def how_to_install(package: str | None) -> str | None:
 
     None for any other package. pip finds sigmahat installed, and adds only the missing packages.
     """
-    for requirement in metadata.requires("sigmahat") or ():
-        match = re.match(r"""([\w.-]+)[^;]*(?:;\s*extra\s*==\s*["'](.+)["'])?""", requirement)
-        if match and match[1] == _DISTRIBUTIONS.get(package or "", package):
-            wanted = f"sigmahat[{match[2]}]" if match[2] else "sigmahat"
-            command = shlex.join([sys.executable, "-m", "pip", "install", wanted])
-            return f"{match[1]} is not installed; to install it: {command}"
-    return None
+    distribution = _DISTRIBUTIONS.get(package or "", package)
+    pattern = re.compile(r"""([\w.-]+)[^;]*(?:;\s*extra\s*==\s*["'](.+)["'])?""")
+    matches = [pattern.match(each) for each in metadata.requires("sigmahat") or ()]
+    extras = [match[2] for match in matches if match and match[1] == distribution]
+    if not extras:
+        return None
+    extra = package if package in extras else extras[0]  # several may require it
+    wanted = f"sigmahat[{extra}]" if extra else "sigmahat"
+    command = shlex.join([sys.executable, "-m", "pip", "install", wanted])
+    return f"{distribution} is not installed; to install it: {command}"
