@@ -1,6 +1,8 @@
 """Damaged files of all formats that are read: each is read, or refused in one line."""
 
+import json
 import os
+import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -17,6 +19,8 @@ from damage import (
     read_result,
 )
 from recorded_logs import CONFIGURATION, estimated, plain_log, write_log
+from sigmahat.recording.log import LogError
+from sigmahat.recording.readers.formats import open_log
 from small_bags import FLOAT, mcap_bag, sqlite_bag
 
 EXAMPLES = 5000 if "SIGMAHAT_COMPLETE" in os.environ else 12
@@ -52,6 +56,14 @@ def ros1(folder: Path) -> Path:
     return folder / "log.bag"
 
 
+def json_lines(folder: Path) -> Path:
+    columns = [(name, values.tolist()) for name, values in plain_log(40).items()]
+    rows = ({name: values[k] for name, values in columns} for k in range(40))
+    lines = (json.dumps({"drive": row, "pair": [k, {"x": k}]}) for k, row in enumerate(rows))
+    (folder / "log.jsonl").write_text("\n".join(lines))
+    return folder / "log.jsonl"
+
+
 def toml(folder: Path) -> Path:
     (folder / "log.toml").write_text(CONFIGURATION)
     return folder / "log.toml"
@@ -62,6 +74,7 @@ LOGS: dict[str, Make] = {
     "parquet": log_file("log.parquet"),
     "mat": log_file("log.mat"),
     "hdf5": log_file("log.h5"),
+    "json": json_lines,
     "db3": db3,
     "mcap": mcap,
     "ros1": ros1,
@@ -76,7 +89,7 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def check(read: Callable[[Path], object], file: Path) -> None:
-    is_text = file.suffix in (".csv", ".toml", ".json")
+    is_text = file.suffix in (".csv", ".toml", ".json", ".jsonl")
     run = attack_in_process if "SIGMAHAT_COMPLETE" in os.environ else attack
     figures: Figures = run(read, file.read_bytes(), range(EXAMPLES), is_text, file.name)
     print(file.name, figures)
@@ -90,6 +103,40 @@ def check(read: Callable[[Path], object], file: Path) -> None:
 @pytest.mark.parametrize("kind", LOGS)
 def test_damaged_logs(kind: str, tmp_path: Path) -> None:
     check(read_log, LOGS[kind](tmp_path))
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ('{"a":' + "[" * 10_000 + "]" * 10_000 + "}", "at most 32 levels"),
+        ('{"a":' + "[" * 500_000, "at most 32 levels"),
+        ('{"a":"' + '\\"' * 400_000, "expected one JSON object"),
+        ("".join(f'{{"k{i}":1}}\n' for i in range(60_000)), "at most 2000 columns"),
+        ("".join(f'{{"a":{{"k{i}":1}}}}\n' for i in range(60_000)), "at most 2000 columns"),
+        ("".join(f'{{"k{i % 1990}":1}}\n' for i in range(20_000)), "at most 30000000 numbers"),
+        ('{"a":"' + "x" * 2_000_000 + '"}', "see line 1"),
+        (f'{{"{"k" * 500_000}":[1,"a"]}}', "expected one JSON object"),
+    ],
+    ids=["arrays", "open", "escapes", "names", "paths", "sparse", "long", "name"],
+)
+def test_json_lines_that_are_more_than_they_seem(text: str, words: str, tmp_path: Path) -> None:
+    (tmp_path / "log.jsonl").write_text(text)
+    begin = time.process_time()
+    with pytest.raises(LogError, match=words) as refused:
+        open_log(tmp_path / "log.jsonl")
+    assert len(str(refused.value)) < 500 + len(str(tmp_path))
+    assert time.process_time() - begin < 3
+
+
+@pytest.mark.parametrize(
+    "text", ["[" + "12:00:00" * 100_000 + "\n", "t\n" + "[1," * 300_000 + "\n"]
+)
+def test_long_lines_without_an_end_of_brackets(text: str, tmp_path: Path) -> None:
+    (tmp_path / "log.csv").write_text(text * 3)
+    begin = time.process_time()
+    with pytest.raises(LogError):
+        open_log(tmp_path / "log.csv")
+    assert time.process_time() - begin < 5
 
 
 def test_damaged_configurations(tmp_path: Path) -> None:

@@ -23,7 +23,7 @@ _LINES = 200  # that are looked at to find the table
 _COMMENT = re.compile(r"\s*(#|%|//)+\s?")
 _SEPARATOR = re.compile(r"sep=(.)", re.IGNORECASE)  # the first line, for Excel
 PREFIX = re.compile(
-    r"\[[^\[\]]*\d\d:\d\d:\d\d[^\[\]]*\]\s*"
+    r"\[[^\[\]]{0,60}\d\d:\d\d:\d\d[^\[\]]{0,60}\]\s*"  # bounded, or a long line takes hours
     r"|(?:\d{4}-\d\d-\d\d[ T])?\d\d:\d\d:\d\d(?:[.,]\d+)?\s*->\s*"
 )
 """The time at which a terminal received a line: "12:03:44.123 -> " or "[2026-03-12 12:03:44] "."""
@@ -32,7 +32,7 @@ _NO_DECIMAL_POINT = re.compile(
 )
 """Points in 1.234 of 1.234,56, in a date and in a time of day."""
 _END_OF_HEAD = "***End_of_Header***"  # in a measurement file of LabVIEW
-_LIST = re.compile(r"[\[(]\s*[-+]?[\d.]+(?:e[-+]?\d+)?[,\s][^\])]*[\])]")
+_LIST = re.compile(r"[\[(]\s*[-+]?[\d.]+(?:e[-+]?\d+)?[,\s][^\[\]()]*[\])]")
 """A list or an array of numbers that was printed: "[0.12, 0.0]" or "[0.12 0.  ]"."""
 _DELIMITERS = ("\t", ";", ",")
 SPACES = " "  # delimiter of a table whose columns are aligned with any number of spaces
