@@ -54,7 +54,7 @@ if sys.version_info >= (3, 11):
 else:
     import tomli as tomllib
 
-DRAWS = 10_000 if os.environ.get("SIGMAHAT_COMPLETE") else 200
+DRAWS = 10_000 if os.environ.get("SIGMAHAT_COMPLETE") else 100
 LANGUAGES = {
     **dict.fromkeys(("ssv", "mjcf", "sdf", "urdf", "drake"), "xml"),
     **{"matlab": "matlab", "modelica": "modelica"},
