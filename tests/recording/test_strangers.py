@@ -21,7 +21,8 @@ from recorded_logs import CONFIGURATION, plain_log, write_log
 from sigmahat.recording.readers.formats import open_log
 from strange_files import TRIALS, Trial, complaint_of
 
-EXAMPLES = int(os.environ.get("SIGMAHAT_STRANGERS", "40"))
+FEW = "40" if "SIGMAHAT_COMPLETE" in os.environ else "20"
+EXAMPLES = int(os.environ.get("SIGMAHAT_STRANGERS", FEW))
 """Number of random examples. If SIGMAHAT_STRANGERS is set, each test run has other examples."""
 CONFIGURED = CONFIGURATION.replace("motor.B", "rls.n = 3\nmotor.B")
 
