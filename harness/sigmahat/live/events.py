@@ -162,6 +162,44 @@ class SamplesApart(Event):
         )
 
 
+@dataclass(frozen=True, kw_only=True)
+class StampsRepeated(Event):
+    """Many samples have the stamp of the sample before, and are left out."""
+
+    kind: ClassVar[str] = "stamps_repeated"
+    column: str  # with the stamps
+    left_out: int  # number of samples
+    samples: int  # number of the last samples, with those left out
+
+    @property
+    def in_words(self) -> str:
+        return (
+            f"{self.column}: {self.left_out} of {self.samples} messages have the time of the one "
+            "before and are left out: send finer times, or leave time.column out of the "
+            "configuration (then the time of arrival counts)"
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class PositionJumped(Event):
+    """A position has jumped as no joint can."""
+
+    kind: ClassVar[str] = "position_jumped"
+    joint: str
+    port: str  # theta or q
+    jump: float  # from one tick to the next [rad]
+    usual: float  # largest step between two ticks before [rad]
+
+    @property
+    def in_words(self) -> str:
+        return (
+            f"{self.joint}: {self.port} jumps by {self.jump:.3g} rad in one tick, before by at "
+            f"most {self.usual:.3g} rad: another unit, a counter that starts again, or a failed "
+            "reading? Not confident until it is back; if the new values are right, start live "
+            "again"
+        )
+
+
 def in_seconds(duration: float) -> str:
     """Returns a duration [s] in words: whole seconds, and tenths of the first second."""
     return f"{duration:.0f} s" if duration >= 1 else f"{duration:.1f} s"

@@ -17,7 +17,7 @@ from sigmahat.files.output import write_whole
 from sigmahat.fmi.model import installed_model
 from sigmahat.fmi.series import schema
 from sigmahat.live.events import Event
-from sigmahat.live.live_joint import BANDED, GIVEN, NO_DATA, LiveJoint, News
+from sigmahat.live.live_joint import BANDED, GIVEN, JUMPED, NO_DATA, LiveJoint, News
 from sigmahat.live.loop import Sink
 
 EVENTS = "/sigmahat/events"  # topic of the events, as Foxglove's own messages of a log
@@ -68,7 +68,9 @@ def _schema() -> foxglove.Schema:
         text = f"end of the 95 % interval of {of} [{model.variable(of).unit}]"
         for end in ("low", "high"):
             described["properties"][f"{of}_{end}"] = {"type": "number", "description": text}
-    described["properties"]["doubt"]["description"] += f"; {NO_DATA} while no data arrive"
+    described["properties"]["doubt"]["description"] += (
+        f"; {NO_DATA} while no data arrive; {JUMPED} after a position has jumped"
+    )
     age = "time since the last tick with data, while no data arrive, else 0 [s]"
     described["properties"]["data_age"] = {"type": "number", "description": age}
     data = json.dumps(described).encode()

@@ -15,7 +15,8 @@ import numpy as np
 from sigmahat.files.output import finite
 from sigmahat.live.changes import ChangesOnLine
 from sigmahat.live.clock import Clock
-from sigmahat.live.events import Event, in_seconds
+from sigmahat.live.events import Event, PositionJumped, in_seconds
+from sigmahat.live.jumps import Jumps
 from sigmahat.live.messages import Columns
 from sigmahat.recording.configuration import INPUTS, Configuration
 from sigmahat.recording.counters import WholePeriods
@@ -34,6 +35,7 @@ OUTPUTS = ("sigma", "sigma_std", "tau_e", "tau_e_std", "phi", "setPoint", "misfi
 _FLAGS = ("confident", "valid")
 GIVEN = (*OUTPUTS, *_FLAGS, "doubt")  # all outputs that are sent to the sinks
 NO_DATA = "NoData"  # value of doubt while a joint has no data; the estimator has no such item
+JUMPED = "PositionJumped"  # value of doubt while a position is not where it was before a jump
 BANDED = ("sigma", "tau_e")  # outputs whose 95 % intervals are sent, too: sigma_low, ...
 _PATIENCE = 0.2  # [s] a tick waits for a port without samples while other ports have some
 _WAITING, _MOST = 1000, 10_000  # most samples that wait for the first time, for slower ports
@@ -118,6 +120,8 @@ class LiveJoint:
         self._ticks = self._skipped = 0
         self._used: dict[str, tuple[float, float] | None] = {"phi": None, "setPoint": None}
         self._whole_periods = WholePeriods.of(self.configuration)
+        self._jumps = {name: Jumps(self.T) for name in ("theta", "q")}
+        self._jumps_told: set[str] = set()
         for port in self.ports.values():
             port.restart()
 
@@ -202,6 +206,23 @@ class LiveJoint:
             for name, used in self._used.items():
                 low, high = used or (math.inf, -math.inf)
                 self._used[name] = min(low, outputs[name]), max(high, outputs[name])
-        yield Estimated(self.name, t, {name: outputs[name] for name in GIVEN})
+        given = {name: outputs[name] for name in GIVEN}
+        yield from self._jumped(t, values if outputs["valid"] else {})
+        if any(each.offset for each in self._jumps.values()):
+            # Nobody knows what the estimator learns now; a change would be one of the values.
+            yield Estimated(self.name, t, given | {"confident": False, "doubt": JUMPED})
+            return
+        yield Estimated(self.name, t, given)
         if (change := self._changes.add(t, outputs)) is not None:
             yield change
+
+    def _jumped(self, t: float, values: Mapping[str, float]) -> Iterator[Event]:
+        """Yields the first jump of each position: failed readings may jump often.
+
+        values  of the ports; none at a tick without data, before which no position counts
+        """
+        for name, jumps in self._jumps.items():
+            usual, jump = jumps.largest, jumps.add(values.get(name, math.nan))
+            if jump and name not in self._jumps_told:
+                self._jumps_told.add(name)
+                yield PositionJumped(t=t, joint=self.name, port=name, jump=jump, usual=usual)

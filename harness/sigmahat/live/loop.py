@@ -7,7 +7,7 @@ from queue import Empty, Full, Queue
 from typing import NamedTuple
 
 from sigmahat.fmi.interrupts import ENDS, handling
-from sigmahat.live.events import Event, SamplesApart, Unreadable
+from sigmahat.live.events import Event, SamplesApart, StampsRepeated, Unreadable
 from sigmahat.live.live_joint import News
 from sigmahat.live.messages import Columns
 from sigmahat.live.session import Session
@@ -15,6 +15,7 @@ from sigmahat.live.silence import Silence
 
 _IDLE = 0.1  # [s] until a signal is seen
 _FIRST = 100  # number of messages until their times are looked at
+_REPEATED = 0.1  # fraction of messages with the time of the one before that is said
 _MOST = 1 << 25  # bytes of all messages that wait
 _OVERHEAD = 1000  # bytes that a message needs besides its contents
 
@@ -100,6 +101,8 @@ class Loop:
     def __init__(self, session: Session, inbox: Inbox, sinks: Sequence[Sink]) -> None:
         self._session, self._inbox, self._sinks = session, inbox, sinks
         self._silence = Silence(session.joints, session.columns, inbox.now())
+        self._double = dict.fromkeys(session.clocks, 0)  # times that repeat, when last looked at
+        self._repeated_told: set[str] = set()
 
     def take(self, message: Message) -> None:
         """Takes the next message. Raises EOFError after the last one."""
@@ -121,6 +124,8 @@ class Loop:
         told = [*passed, *of_fields, *self._silence.news(found, now)]
         if self._inbox.read == _FIRST:
             told += self._samples_apart(now)
+        if self._inbox.read % _FIRST == 0:
+            told += self._stamps_repeated(now)
         self._tell(told)
 
     def wait(self) -> None:
@@ -143,6 +148,18 @@ class Loop:
                 t, gap = self._silence.time(now), joint.longest_gap
                 return [SamplesApart(t=t, joint=joint.name, interval=usual, longest_gap=gap)]
         return []
+
+    def _stamps_repeated(self, now: float) -> list[Event]:
+        """Returns the time columns that repeat in the last messages, each of them once."""
+        events: list[Event] = []
+        for column, clock in self._session.clocks.items():
+            left_out = clock.double - self._double[column]
+            self._double[column] = clock.double
+            if left_out > _REPEATED * _FIRST and column not in self._repeated_told:
+                self._repeated_told.add(column)
+                t = self._silence.time(now)
+                events.append(StampsRepeated(t=t, column=column, left_out=left_out, samples=_FIRST))
+        return events
 
 
 def watch(session: Session, inbox: Inbox, sinks: Sequence[Sink]) -> None:
