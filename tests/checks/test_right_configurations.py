@@ -14,7 +14,7 @@ from recorded_logs import in_memory
 from shared_data import data_folder
 from sigmahat.checks.check import check, check_identified
 from sigmahat.checks.findings import Checked, Finding, Kind, Severity
-from sigmahat.checks.text import sentence
+from sigmahat.checks.text import sentence, summary
 from sigmahat.motor.identify import identify
 from sigmahat.motor.write import update
 from sigmahat.recording.configuration import checked_configuration
@@ -101,6 +101,8 @@ def test_with_the_torque_of_another_joint_too_no_key_is_wrong() -> None:
     assert note.key == "ports.tau.column"
     assert 0.14 < note.measured < 1.0
     assert "the model does not fit" in sentence(note)
+    assert "contradicts" not in summary(found)
+    assert "the model does not fit the log" in summary(found).splitlines()[0]
 
 
 def test_the_power_of_friction_shows_the_sign_of_the_torque() -> None:

@@ -1,8 +1,10 @@
 """Tests of the line about a whole log: confidence and changes of the stiffness."""
 
+import numpy as np
 import pytest
 
-from sigmahat.result.headline import Confidence, StiffnessChange
+from sigmahat.result.curve import Branch, Curve
+from sigmahat.result.headline import Confidence, StiffnessChange, headline, told
 
 
 @pytest.mark.parametrize(
@@ -29,3 +31,18 @@ def test_confidence_is_about_the_second_half(
 
 def test_a_change_in_words() -> None:
     assert StiffnessChange(20.0, 0.3).in_words == "the stiffness changed by +30 % at 20 s"
+
+
+def curve(std: float) -> Curve:
+    phi = np.linspace(-0.1, 0.1, 5)
+    branch = Branch(0.0, (-0.1, 0.1), phi, 2 * phi, 0 * phi, 2 + 0 * phi, std + 0 * phi)
+    return Curve(polynomial=None, branches=[branch])  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("std", "says"), [(20.0, False), (0.1, True)])
+def test_without_any_stiffness_no_change_of_it_is_told(std: float, says: bool) -> None:
+    """GIVEN an encoder that died, THEN the estimator sees a change, but of what is not known."""
+    unknown, known = StiffnessChange(6.2, None), StiffnessChange(9.0, 0.3)
+    line = headline(curve(std), Confidence("Change", {"Change": 1.0}), [unknown])
+    assert ("changed" in line) is says
+    assert list(told([unknown, known], curve(std))) == ([unknown, known] if says else [known])

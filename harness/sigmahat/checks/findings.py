@@ -96,6 +96,9 @@ class Finding:
         return (self.key, *(key for key, _ in self.others))
 
 
+_NO_FIT = (Kind.UNEXPLAINED, Kind.MISFIT, Kind.FROZEN)
+
+
 @dataclass(frozen=True)
 class Checked:
     """The result of all checks."""
@@ -112,6 +115,11 @@ class Checked:
     def is_wrong(self) -> bool:
         """Whether the configuration contradicts the log."""
         return bool(self.of(Severity.WRONG))
+
+    @property
+    def fits(self) -> bool:
+        """Whether nothing found says that the log does not fit the model, for whatever reason."""
+        return not any(each.kind in _NO_FIT or each.about == "Misfit" for each in self.findings)
 
 
 def as_dict(checked: Checked) -> dict[str, Any]:

@@ -47,8 +47,12 @@ def _lines(found: Sequence[Finding]) -> Iterator[str]:
 
 
 def nothing_found(checked: Checked) -> str:
-    """Returns the line of text for a log that does not contradict the configuration."""
+    """Returns the line of text for a log that shows no wrong value of the configuration."""
     seconds = f"{checked.ticks * checked.T:.6g} s"
+    if not checked.fits:
+        return (
+            f"checked: no key is shown to be wrong, but the model does not fit the log of {seconds}"
+        )
     return f"checked: nothing in {seconds} of the log contradicts the configuration"
 
 

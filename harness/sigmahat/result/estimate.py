@@ -34,7 +34,7 @@ from sigmahat.result.curve import (
 from sigmahat.result.curve_of_log import POINTS, Answer, write_points
 from sigmahat.result.data_sheet import MOTOR, UNITS, data_sheet, priors
 from sigmahat.result.estimate_table import MCAP, REPLAYED, EstimateWriter, Replayed, mcap_file
-from sigmahat.result.headline import Confidence, StiffnessChange, headline
+from sigmahat.result.headline import Confidence, StiffnessChange, headline, told
 from sigmahat.result.learned import LEARNED, read_learned, write_learned
 from sigmahat.result.replayed_log import Replay
 
@@ -289,7 +289,7 @@ def _second_half(result: Estimate) -> Iterator[str]:
     yield f"  deformation phi       {result.phi_range[0]:10.4g} to {result.phi_range[1]:10.4g} rad"
     yield f"  prediction error RMS  {result.epsilon_rms:10.4g} N.m ({relative} of the torque)"
     if result.parameters["method"] == "FilteredRegression":
-        yield from (f"  {each.in_words}" for each in result.changes)
+        yield from (f"  {each.in_words}" for each in told(result.changes, result.curve))
         reasons = ", ".join(f"{item} {100 * share:.3g} %" for item, share in result.doubt.items())
         why = f" ({reasons})" if reasons else ""
         yield f"  not confident         {100 * (1 - result.confident):10.3g} % of the time{why}"

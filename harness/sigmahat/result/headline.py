@@ -76,7 +76,18 @@ def headline(curve: Curve, confidence: Confidence, changes: Sequence[StiffnessCh
         text = _in_one_line(chosen[0])
     if curve.claims:
         text += f", {confidence.in_words}"
-    return "; ".join([text, *(change.in_words for change in changes)])
+    return "; ".join([text, *(change.in_words for change in told(changes, curve))])
+
+
+def told(changes: Sequence[StiffnessChange], curve: Curve) -> Sequence[StiffnessChange]:
+    """Returns the changes that may be called changes of the stiffness.
+
+    Where no stiffness is known, neither before a change nor at the end, the log has changed, but
+    by what is not known: a dead encoder does that, too.
+    """
+    if any(map(is_told, curve.branches)):
+        return changes
+    return [each for each in changes if each.relative is not None]
 
 
 def _plus_minus(branch: Branch) -> str:

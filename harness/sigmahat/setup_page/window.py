@@ -159,7 +159,8 @@ class FindingsPanel:
     def _findings(self, checked: Checked) -> list[UIElement]:
         from sigmahat.checks.text import TITLES, nothing_found, sentence
 
-        rows = [] if checked.is_wrong else [_line(nothing_found(checked), "fine")]
+        kind = "fine" if checked.fits else "ink"
+        rows = [] if checked.is_wrong else [_line(nothing_found(checked), kind)]
         for severity, title in TITLES.items():
             found = checked.of(severity)
             if found:
