@@ -103,7 +103,11 @@ def test_values_that_do_not_fit(column: str, values: np.ndarray, words: str, she
         ('column = "q"', 'column = "q"\nscale = "x"', "expected a number"),
         ('column = "t"', 'column = "t"\nunit = "sec."', "unknown unit"),
         ('[ports.q]\ncolumn = "q"', "", "needs [ports.q]"),
-        ('column = "q"', 'column = "theta"', "[ports.theta] and [ports.q] both use the column"),
+        (
+            'column = "q"',
+            'column = "theta"',
+            "name another column for one of them. A table in long form",
+        ),
         ('column = "tau"', 'column = "t"', "[time] and [ports.tau] both use the column 't'"),
         ("samplePeriod = 0.001", "samplePeriod = 0", "fill in the time between two rows"),
         ("motor.gamma = 50", "modality = 'Sensr'", "did you mean 'Sensor'"),

@@ -263,7 +263,8 @@ def _refuse_repeated(file: _ConfigurationFile, path: Path) -> None:
         if port.column in used:
             raise LogError(
                 f"{path}: [{used[port.column]}] and [ports.{name}] both use the column "
-                f"{quoted(port.column)}; name another column for one of them"
+                f"{quoted(port.column)}; name another column for one of them. A table in "
+                "long form, with rows of motor and link in turn, needs a column for each first"
             )
         used[port.column] = f"ports.{name}"
 
