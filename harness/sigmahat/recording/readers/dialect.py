@@ -23,7 +23,7 @@ _LINES = 200  # that are looked at to find the table
 _COMMENT = re.compile(r"\s*(#|%|//)+\s?")
 _SEPARATOR = re.compile(r"sep=(.)", re.IGNORECASE)  # the first line, for Excel
 PREFIX = re.compile(
-    r"\[[^\[\]]{0,60}\d\d:\d\d:\d\d[^\[\]]{0,60}\]\s*"  # bounded, or a long line takes hours
+    r"\[[^\[\]]{0,60}\d\d:\d\d:\d\d[^\[\]]{0,60}\]\s*"  # bounded: else quadratic in a line
     r"|(?:\d{4}-\d\d-\d\d[ T])?\d\d:\d\d:\d\d(?:[.,]\d+)?\s*->\s*"
 )
 """The time at which a terminal received a line: "12:03:44.123 -> " or "[2026-03-12 12:03:44] "."""
