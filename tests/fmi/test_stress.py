@@ -51,11 +51,11 @@ def test_valgrind_finds_nothing(fmu: str, version: str, build: Path, folder: Pat
 
 @pytest.mark.slow("the fuzzer has a fixed time to try inputs")
 def test_fuzzer_finds_nothing(build: Path, folder: Path) -> None:
-    """An estimator and a plant at the same time, each in one version, for ten seconds."""
+    """An estimator and a plant at the same time, each in one version, for five seconds."""
     compiler = compiler_with(FUZZER, folder)
     # Long sequences from the first second on: short ones do not get far.
     lengths = ["-max_len=512", "-len_control=0"]
-    options = ["-max_total_time=10", *lengths, "-timeout=20", f"-artifact_prefix={folder}/"]
+    options = ["-max_total_time=5", *lengths, "-timeout=20", f"-artifact_prefix={folder}/"]
     running = []
     for fmu, version in FUZZED:
         headers = folder / version
