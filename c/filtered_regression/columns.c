@@ -19,11 +19,28 @@
  * entry to entry_of.
  */
 #include <stddef.h>
-#include <string.h>
-
-#include "constants.h"
+#include "real_math.h"
 #include "regression.h"
 #include "torque_basis.h"
+#include <string.h>
+
+/* Half widths of dead zones and hysteresis, divided by range.phi [1]. One of the three is near any width. */
+#define SH_DEAD_ZONES {(sh_real)0.01, (sh_real)0.04, (sh_real)0.16}
+#define SH_HYSTERESES {(sh_real)0.005, (sh_real)0.02, (sh_real)0.08}
+/* Share of the covered range above which a half width looks like the spring [1]. Half this share doubles the error. */
+#define SH_LOOKS_LIKE_SPRING ((sh_real)0.25)
+/* Stiffness within the widest dead zone divided by the stiffness outside [1]. Below this ratio, the zone is a gap and
+ * no part of sigma; otherwise, the zone is a knee. A knee of harmonic drives has the ratio 0.5.
+ */
+#define SH_GAP ((sh_real)0.3)
+/* Deformation at a possible knee divided by range.phi [1]. Harmonic drives have a knee at 1/3 of the largest torque. */
+#define SH_POSSIBLE_KNEE ((sh_real)0.35)
+/* Error of the deformation at a knee, divided by range.phi [1]: `sigmahat identify` finds this deformation to 0.01. */
+#define SH_PLACE_OF_KNEE ((sh_real)0.02)
+/* Largest entry of a column of the motor encoder [N.m]: a wrong stiffness must not make every row too large. */
+#define SH_LARGEST_ENCODER_ERROR SH_FOR(SH_REAL, 1e74, 1e14f)
+/* Largest share of torque noise that passes through the column of the motor torque [1]: ten times expected friction. */
+#define SH_LARGEST_RETURN ((sh_real)0.5)
 
 static const sh_real DEAD_ZONES[SH_WIDTHS] = SH_DEAD_ZONES;
 static const sh_real HYSTERESES[SH_WIDTHS] = SH_HYSTERESES;
@@ -125,10 +142,11 @@ int sh_columns_place(const sh_columns *columns, int kind)
     return -1;
 }
 
-int sh_column_is_distinct(const sh_regression_state *state, const sh_parameters *p, int i)
+int sh_column_is_distinct(const sh_columns *columns, const sh_signals *signals,
+                          const sh_parameters *p, int i)
 {
-    const sh_column *column = &state->columns.column[i];
-    const sh_real covered = state->history.phi_max - state->history.phi_min;
+    const sh_column *column = &columns->column[i];
+    const sh_real covered = signals->history.phi_max - signals->history.phi_min;
 
     return is_knee(column) || column->place <= SH_LOOKS_LIKE_SPRING * covered / p->range.phi;
 }
@@ -189,7 +207,7 @@ static void add(column_list *list, const sh_parameters *p, int kind, int i, int 
 }
 
 /* Lists first the columns of the spring, and behind them the other columns with their own filters. The columns of
- * friction are the last columns before the inertia, as change.c requires.
+ * friction are the last columns before the inertia, as bank.c requires.
  */
 static void list_columns(const sh_parameters *p, column_list *list)
 {
@@ -478,19 +496,18 @@ sh_real sh_columns_y(const sh_parameters *p, const sh_filtered *f)
 /* Returns sigma S + gamma^2 (D_theta S' + B S''), the error of y by the encoder error S of theta, which is signal i.
  * Returns 0 while sigma is not known (detail 13).
  */
-static sh_real encoder_error(const sh_regression_state *state, const sh_parameters *p, int i)
+static sh_real encoder_error(const sh_filtered *f, const sh_feedback *feedback,
+                             const sh_parameters *p, int i)
 {
-    const sh_filtered *f = &state->mean.filtered;
-    const sh_real error = state->sigma * f->output[i] + motor_torque(p, f, i);
+    const sh_real error = feedback->sigma * f->output[i] + motor_torque(p, f, i);
 
-    return state->stiffness_known ? sh_limited(error, SH_LARGEST_ENCODER_ERROR) : 0;
+    return feedback->stiffness_known ? sh_limited(error, SH_LARGEST_ENCODER_ERROR) : 0;
 }
 
 /* Returns the entry of a column without a filter of its own, before the multiplication by the factor `prior`. */
-static sh_real entry_of(const sh_regression_state *state, const sh_parameters *p,
-                        const sh_column *column)
+static sh_real entry_of(const sh_column *column, const sh_filtered *f, const sh_feedback *feedback,
+                        const sh_parameters *p)
 {
-    const sh_filtered *f = &state->mean.filtered;
     const sh_real gamma = p->motor.gamma, gain = sh_is_measured(p) ? 1 : -gamma;
 
     switch (column->kind) {
@@ -502,13 +519,13 @@ static sh_real entry_of(const sh_regression_state *state, const sh_parameters *p
         return -sh_fabs(torque_in_y(p, f)) * as_if_smooth(p, f, SH_FILTER_SIGN);
     case SH_COLUMN_DELAY: /* gamma (tau' + delay tau''/2) */
         return -gain *
-               (f->first[SH_FILTER_TORQUE] + state->delay / 2 * f->second[SH_FILTER_TORQUE]);
+               (f->first[SH_FILTER_TORQUE] + feedback->delay / 2 * f->second[SH_FILTER_TORQUE]);
     case SH_COLUMN_REVERSAL: /* |gamma| s'_f */
         return sh_fabs(gamma) * f->first[SH_FILTER_SIGN];
     case SH_COLUMN_SIN_M:
-        return encoder_error(state, p, SH_FILTER_SIN_M);
+        return encoder_error(f, feedback, p, SH_FILTER_SIN_M);
     case SH_COLUMN_COS_M:
-        return encoder_error(state, p, SH_FILTER_COS_M);
+        return encoder_error(f, feedback, p, SH_FILTER_COS_M);
     case SH_COLUMN_VISCOUS: /* -gamma^2 D_theta theta'_f */
         return -gamma * gamma * p->motor.D_theta * f->first[SH_FILTER_THETA];
     case SH_COLUMN_COULOMB: /* -|gamma| s_f */
@@ -520,20 +537,21 @@ static sh_real entry_of(const sh_regression_state *state, const sh_parameters *p
     }
 }
 
-void sh_columns_row(const sh_regression_state *state, const sh_parameters *p, sh_real *x)
+void sh_columns_row(const sh_columns *columns, const sh_mean *mean, const sh_feedback *feedback,
+                    const sh_parameters *p, sh_real *x)
 {
-    const sh_filtered *f = &state->mean.filtered;
-    const int size = state->columns.size, filtered = state->columns.filtered;
+    const sh_filtered *f = &mean->filtered;
+    const int size = columns->size, filtered = columns->filtered;
     int i;
 
     for (i = 0; i < filtered; ++i) {
-        x[i] = state->mean.output[i];
+        x[i] = mean->output[i];
     }
     for (; i < size; ++i) {
-        const sh_column *column = &state->columns.column[i];
+        const sh_column *column = &columns->column[i];
         const int is_motor = column->kind >= SH_COLUMN_REVERSAL;
 
-        x[i] = sh_is_measured(p) && is_motor ? 0 : column->prior * entry_of(state, p, column);
+        x[i] = sh_is_measured(p) && is_motor ? 0 : column->prior * entry_of(column, f, feedback, p);
     }
     x[size + SH_RIGHT_GAIN] = torque_in_y(p, f);
     x[size + SH_RIGHT_Y] = sh_columns_y(p, f) - f->output[SH_FILTER_NOMINAL];
@@ -543,11 +561,12 @@ void sh_columns_row(const sh_regression_state *state, const sh_parameters *p, sh
  * from the column, and thus from the prediction. The remaining noise has the variance (1 - lambda) N_tau. This number
  * is also the covariance of the remaining noise and the torque in y.
  */
-sh_real sh_columns_remove_noise(const sh_regression_state *state, const sh_row_noise *noise,
-                                sh_real epsilon, sh_real *x, sh_column_noise *left)
+sh_real sh_columns_remove_noise(const sh_columns *columns, const sh_real *beta,
+                                const sh_row_noise *noise, sh_real epsilon, sh_real *x,
+                                sh_column_noise *left)
 {
-    const int i = sh_columns_place(&state->columns, SH_COLUMN_DRIVE);
-    const sh_real torque = x[state->columns.size + SH_RIGHT_GAIN];
+    const int i = sh_columns_place(columns, SH_COLUMN_DRIVE);
+    const sh_real torque = x[columns->size + SH_RIGHT_GAIN];
     sh_real slope, c, nu, change;
 
     left->information = left->gain = 0;
@@ -555,11 +574,11 @@ sh_real sh_columns_remove_noise(const sh_regression_state *state, const sh_row_n
         return 0;
     }
     slope = x[i] / torque;
-    c = sh_limited(slope * state->beta[i], SH_LARGEST_RETURN);
+    c = sh_limited(slope * beta[i], SH_LARGEST_RETURN);
     nu = noise->share * epsilon / (1 - noise->share * c);
     left->gain = (1 - noise->share) * noise->torque * slope;
     left->information = left->gain * slope;
     change = x[i] * (sh_fabs(1 - nu / torque) - 1);
     x[i] += change;
-    return change * state->beta[i];
+    return change * beta[i];
 }

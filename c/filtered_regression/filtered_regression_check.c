@@ -4,9 +4,12 @@
  */
 #include <string.h>
 
-#include "constants.h"
 #include "method.h"
+#include "real_math.h"
 #include "regression.h"
+
+/* End of the range of regression.decimation [1]. */
+#define SH_LARGEST_DECIMATION 64
 
 /* Returns 1 if the columns are equal to the columns at the start. Columns never change after the start. */
 static int are_columns(const sh_columns *columns, const sh_parameters *p)
@@ -55,7 +58,7 @@ static int is_choice(const sh_regression_state *state, const sh_posterior *poste
 /* Returns 1 if all sizes, step counters and flags are in their ranges. */
 static int are_numbers(const sh_regression_state *state)
 {
-    const sh_blocks *blocks = &state->blocks;
+    const sh_bank *bank = &state->bank;
     const sh_refit *refit = &state->refit;
     const int size = state->columns.size;
     const struct {
@@ -63,30 +66,31 @@ static int are_numbers(const sh_regression_state *state)
         int least, most;
     } ranges[] = {
         {&state->modality, SH_MODALITY_RESIDUAL, SH_MODALITY_MODEL},
-        {&state->friction_drifts, 0, 1},
-        {&state->stiffness_known, 0, 1},
+        {&bank->friction_drifts, 0, 1},
+        {&state->feedback.stiffness_known, 0, 1},
         {&state->signals.begun, 0, 1},
         {&state->signals.decimation, 1, SH_LARGEST_DECIMATION},
         {&state->mean.samples, 0, SH_LARGEST_DECIMATION},
-        {&state->row.tick, 0, SH_LARGEST_DECIMATION},
-        {&state->data.size, size, size},
+        {&state->schedule.tick, 0, SH_LARGEST_DECIMATION},
+        {&state->samples.data.size, size, size},
         {&state->posterior.information.size, 1, size},
         {&refit->posterior.information.size, 1, size},
         {&refit->unread, 0, size},
-        {&refit->step, 0, SH_REFIT_STEPS},
+        {&refit->is_open, 0, 1},
+        {&state->schedule.job, 0, SH_REFIT_JOBS},
         {&refit->trial, 0, SH_GROUPS - 1},
         {&refit->last_trial, 0, SH_GROUPS - 1},
-        {&blocks->constant.size, size, size},
-        {&blocks->drifting.size, size, size},
-        {&blocks->recent.size, size, size},
-        {&state->change.changed.size, size, size},
-        {&state->change.following, 0, 1},
-        {&state->change.widened, 0, SH_MAX_COLUMNS},
+        {&bank->constant.size, size, size},
+        {&bank->friction.size, size, size},
+        {&state->misfit.recent.size, size, size},
+        {&bank->spring.size, size, size},
+        {&bank->following, 0, 1},
+        {&bank->widened, 0, SH_MAX_COLUMNS},
     };
     const int count = sizeof ranges / sizeof ranges[0];
     int i;
 
-    /*@ loop unroll 20; */
+    /*@ loop unroll 21; */
     for (i = 0; i < count; ++i) {
         if (*ranges[i].number < ranges[i].least || *ranges[i].number > ranges[i].most) {
             return 0;

@@ -1,9 +1,14 @@
-#include "information.h"
-
 #include <string.h>
 
-#include "constants.h"
+#include "information.h"
 #include "pair.h"
+#include "real_math.h"
+
+/* Least entry of D [1]. An update that would make an entry of D smaller is left out, because 1/D would overflow. */
+#define SH_SMALLEST_D SH_FOR(SH_REAL, 1e-300, 1e-37f)
+/* Largest factor by which a step may increase a variance [1]. Beyond this factor, D would consist of rounding errors.
+ */
+#define SH_LARGEST_GROWTH SH_FOR(SH_REAL, 1e12, 1e6f)
 
 /* Returns the index in U at which row i begins. */
 static int row_offset(int size, int i)

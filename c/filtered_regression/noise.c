@@ -1,7 +1,16 @@
 /* The variance of a row, and the noise in the columns of a row. */
-#include "constants.h"
+#include "real_math.h"
 #include "regression.h"
 #include "state_variable_filter.h"
+
+/* Share of excess noise in the variance of a row [1]. With 0.1, intervals are too narrow under jitter; with 1, too
+ * wide.
+ */
+#define SH_EXCESS ((sh_real)0.3)
+/* Share of the rounding variance count^2/12 that fourth differences do not show [1]: mean for 1 to 100 counts. */
+#define SH_ROUNDING_IS_NOT_WHITE ((sh_real)0.056)
+/* Number of std deviations above which the first rows contradict the assumption that the motor is at rest [1]. */
+#define SH_AT_REST ((sh_real)5)
 
 /* Returns the sum of the squared counts of both encoders [rad2], which is 12 times the rounding variance of phi. */
 static sh_real counts_squared(const sh_signals *signals)
@@ -16,34 +25,21 @@ static sh_real inertial_noise(const sh_signals *signals, const sh_parameters *p)
 }
 
 /* gamma^2 (tau_C^2 + P_CC) u_f^2: variance of the friction whose sign is unknown [(N.m)2] */
-static sh_real friction_variance(const sh_regression_state *state, const sh_parameters *p)
+sh_real sh_noise_of_friction(const sh_signals *signals, const sh_columns *columns,
+                             const sh_posterior *posterior, const sh_real *beta,
+                             const sh_parameters *p)
 {
-    const sh_filters *filters = &state->signals.filters;
+    const sh_filters *filters = &signals->filters;
     const sh_real u_f = filters->input[SH_FILTER_UNKNOWN] - filters->behind[2][SH_FILTER_UNKNOWN];
-    const int size = state->columns.size, C = sh_columns_place(&state->columns, SH_COLUMN_COULOMB);
+    const int size = columns->size, C = sh_columns_place(columns, SH_COLUMN_COULOMB);
     sh_real c[SH_MAX_COLUMNS] = {0}, square; /* of the coefficient of tau_C */
 
-    if (C < 0 || !(sh_fabs(u_f) > 0)) {
+    if (C < 0 || !(sh_fabs(u_f) > 0) || sh_is_measured(p)) {
         return 0;
     }
     c[C] = 1;
-    square = sh_square(state->beta[C]) +
-             sh_posterior_variances(&state->posterior, p->prior.B, c, c, size).first;
+    square = sh_square(beta[C]) + sh_posterior_variances(posterior, p->prior.B, c, c, size).first;
     return sh_square(p->motor.gamma * p->prior.tau_coulomb * u_f) * square;
-}
-
-/* The fourth difference of white noise of variance 1 has the variance 70; detail 4 */
-sh_real sh_noise_watch_theta(sh_regression_state *state, const sh_parameters *p)
-{
-    const sh_real *theta = state->signals.theta_before;
-    const sh_real rough =
-        sh_square(theta[0] - 4 * theta[1] + 6 * theta[2] - 4 * theta[3] + theta[4]) / 70;
-    sh_real *mean = &state->history.rough;
-
-    if (!sh_is_measured(p)) {
-        *mean += sh_fmin(p->samplePeriod / SH_NOISE_TIME, 1) * (rough - *mean);
-    }
-    return rough;
 }
 
 /* K R = (sigma^2 (count^2 + count_q^2)/12 + (gamma s_tau)^2) (1 + 0.3 (X - 1))
@@ -63,22 +59,23 @@ sh_real sh_noise_watch_theta(sh_regression_state *state, const sh_parameters *p)
  * and N_C by friction of unknown sign. X is N_tau + N_theta divided by the value of this sum with rounding alone.
  * Jitter of the sample times increases X. lambda = N_tau / (N_tau + N_theta + N_C), detail 14.
  */
-sh_row_noise sh_noise_of_row(const sh_regression_state *state, const sh_parameters *p)
+sh_row_noise sh_noise_of_row(const sh_signals *signals, const sh_feedback *feedback,
+                             sh_real friction, const sh_parameters *p)
 {
-    const sh_history *history = &state->history;
-    const sh_filter_design *design = &state->signals.design;
-    const sh_real rounding = sh_square(state->sigma) * counts_squared(&state->signals) / 12;
+    const sh_history *history = &signals->history;
+    const sh_filter_design *design = &signals->design;
+    const sh_real rounding = sh_square(feedback->sigma) * counts_squared(signals) / 12;
     sh_real R = rounding + sh_square(p->noise.tau_e), stays = rounding * history->resting;
     sh_row_noise noise = {0, 0, 0, 0, 0};
 
     if (!sh_is_measured(p)) {
-        const sh_real inertial = inertial_noise(&state->signals, p);
-        const sh_real rounded = sh_square(state->signals.count) / 12;
+        const sh_real inertial = inertial_noise(signals, p);
+        const sh_real rounded = sh_square(signals->count) / 12;
         const sh_real torque = sh_square(p->motor.gamma * p->noise.tau);
         sh_real whole, X;
 
-        noise.friction = friction_variance(state, p);
-        noise.torque = state->signals.gain * torque;
+        noise.friction = friction;
+        noise.torque = signals->gain * torque;
         whole = noise.torque + inertial * sh_fmax(history->rough, rounded);
         X = sh_fmax(1, whole / (noise.torque + inertial * rounded));
         whole += noise.friction;
@@ -88,7 +85,7 @@ sh_row_noise sh_noise_of_row(const sh_regression_state *state, const sh_paramete
         stays += noise.friction * history->unsure;
     }
     noise.lasting = sh_square(1 + stays / R);
-    noise.R = R * noise.lasting / (sh_real)state->signals.decimation;
+    noise.R = R * noise.lasting / (sh_real)signals->decimation;
     return noise;
 }
 
@@ -101,11 +98,10 @@ sh_real sh_noise_of_deformation(const sh_signals *signals)
 /* N R = (gamma^2 B prior.B)^2 G V. V is the mean over samples of the squared fourth difference / 70. A sample in which
  * the position changes adds 0.056 (count^2 / 12) to the mean V.
  */
-sh_real sh_noise_of_inertia(const sh_regression_state *state, const sh_parameters *p)
+sh_real sh_noise_of_inertia(const sh_signals *signals, const sh_row *row, const sh_parameters *p)
 {
-    const sh_signals *signals = &state->signals;
-    const sh_real V = state->row.rough +
-                      SH_ROUNDING_IS_NOT_WHITE * state->row.moved * sh_square(signals->count) / 12;
+    const sh_real V =
+        row->rough + SH_ROUNDING_IS_NOT_WHITE * row->moved * sh_square(signals->count) / 12;
 
     return sh_is_measured(p) ? 0 : sh_square(p->prior.B) * inertial_noise(signals, p) * V;
 }
@@ -113,24 +109,19 @@ sh_real sh_noise_of_inertia(const sh_regression_state *state, const sh_parameter
 /* epsilon^2 > 25 (x' P x + N_tau + (gamma^2 B)^2 G count^2/12 + gamma^2 (tau_C^2 + P_CC) u_f^2). In this condition, x
  * contains only the columns of the equation of motion. Columns of other effects would hide a slow motion.
  */
-int sh_noise_contradicts_rest(sh_regression_state *state, const sh_parameters *p,
-                              const sh_row_noise *noise)
+int sh_noise_contradicts_rest(const sh_signals *signals, const sh_columns *columns,
+                              const sh_posterior *posterior, const sh_real *beta, const sh_real *x,
+                              const sh_row_noise *noise, const sh_parameters *p)
 {
-    const int size = state->columns.size;
-    const sh_real *x = state->row.x;
-    sh_real c[SH_MAX_COLUMNS] = {0}, epsilon, variance;
+    const int size = columns->size;
+    const sh_real epsilon = x[size + SH_RIGHT_Y] - sh_sum_of_products(x, beta, size);
+    sh_real c[SH_MAX_COLUMNS] = {0}, variance;
     int i;
 
-    if (sh_is_measured(p) || !(state->history.starting > 0)) {
-        return 0;
-    }
-    state->history.starting -= (sh_real)state->signals.decimation * p->samplePeriod;
-    epsilon = x[size + SH_RIGHT_Y] - sh_sum_of_products(x, state->beta, size);
     for (i = 0; i < size; ++i) {
-        c[i] = sh_column_is(&state->columns.column[i], SH_IS_EQUATION) ? x[i] : 0;
+        c[i] = sh_column_is(&columns->column[i], SH_IS_EQUATION) ? x[i] : 0;
     }
-    variance =
-        sh_posterior_variances(&state->posterior, p->prior.B, c, c, size).first + noise->torque +
-        inertial_noise(&state->signals, p) * sh_square(state->signals.count) / 12 + noise->friction;
+    variance = sh_posterior_variances(posterior, p->prior.B, c, c, size).first + noise->torque +
+               inertial_noise(signals, p) * sh_square(signals->count) / 12 + noise->friction;
     return sh_square(epsilon) > sh_square(SH_AT_REST) * variance;
 }

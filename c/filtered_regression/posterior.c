@@ -3,8 +3,15 @@
  */
 #include <string.h>
 
-#include "constants.h"
+#include "real_math.h"
 #include "regression.h"
+
+/* Relative error of the information that is removed as noise [1]: the rounding error repeats with the motion. */
+#define SH_REMOVAL_ERROR ((sh_real)0.05)
+/* Relative error of the variance of the torque noise [1]: noise.tau is known to 10 %. */
+#define SH_TORQUE_NOISE_ERROR ((sh_real)0.2)
+/* Least share of the information after the removal of noise [1]. A smaller share would be a rounding error in float. */
+#define SH_LEAST_REST ((sh_real)1e-3)
 
 void sh_posterior_copy(sh_posterior *to, const sh_posterior *from)
 {
@@ -32,15 +39,20 @@ sh_real sh_posterior_take(sh_posterior *posterior, const sh_real *x, int size, s
     return sh_information_take(&posterior->information, row, weight) / weight;
 }
 
+void sh_posterior_count_noise(sh_posterior *posterior, sh_real N, sh_real Q)
+{
+    posterior->spread += Q * posterior->weight * posterior->weight;
+    posterior->surplus += N * posterior->weight;
+}
+
 /* D_b -= N removes the information N, which is noise. The right-hand side s = D_b z of y changes by s_y += N / prior.B,
  * because N is biased towards b = -1, which is beta = -1 / prior.B (detail 7).
  */
-void sh_posterior_remove(sh_posterior *posterior, sh_real information, sh_real prior_B)
+void sh_posterior_remove(sh_posterior *posterior, sh_real prior_B)
 {
     sh_last_row last = sh_information_last(&posterior->information);
     sh_real N, left;
 
-    posterior->surplus += information;
     N = sh_fmin(posterior->surplus, last.D - 1); /* 1: the prior */
     if (!(N > 0)) {
         return;
@@ -106,20 +118,20 @@ void sh_posterior_remove_noise(sh_posterior *posterior, sh_real prior_B, int i,
     (void)sh_information_take(&posterior->information, row, -less);
 }
 
-void sh_posterior_estimate(sh_regression_state *state, sh_real prior_B)
+void sh_posterior_estimate(const sh_posterior *posterior, int size, sh_real prior_B, sh_real *beta,
+                           sh_real *per_gain)
 {
-    const sh_posterior *posterior = &state->posterior;
     const sh_last_row last = weighed_last(posterior, prior_B);
     sh_real own_beta[SH_MAX_COLUMNS] = {0}, own_gain[SH_MAX_COLUMNS] = {0};
     int i;
 
     sh_information_solve(&posterior->information, &last, own_beta, own_gain);
-    for (i = 0; i < state->columns.size; ++i) {
-        state->beta[i] = state->per_gain[i] = 0;
+    for (i = 0; i < size; ++i) {
+        beta[i] = per_gain[i] = 0;
     }
     for (i = 0; i < posterior->information.size; ++i) {
-        state->beta[posterior->column[i]] = own_beta[i];
-        state->per_gain[posterior->column[i]] = own_gain[i];
+        beta[posterior->column[i]] = own_beta[i];
+        per_gain[posterior->column[i]] = own_gain[i];
     }
 }
 

@@ -1,5 +1,6 @@
 /* Interfaces between the files of FilteredRegression. Numbers of a "point" or "detail" refer to
- * docs/filtered-regression.md, which has the derivations.
+ * docs/filtered-regression.md, which has the derivations. A constant that is a choice is in the file that uses it, with
+ * its unit and its reason; here are those of several files.
  */
 #ifndef SH_REGRESSION_H
 #define SH_REGRESSION_H
@@ -7,8 +8,8 @@
 #include "information.h"
 
 enum {
-    SH_ROW_STEPS = 7,   /* number of steps in which a row changes the state */
-    SH_REFIT_STEPS = 16 /* number of steps of a refit after its rows */
+    SH_ROW_JOBS = 7,   /* number of jobs by which a row changes the state */
+    SH_REFIT_JOBS = 16 /* number of jobs of a refit after its rows */
 };
 
 /* Flags for the quantities that a step changes. The values may be added up. */
@@ -111,7 +112,8 @@ void sh_columns_start(sh_columns *columns, const sh_parameters *p);
 int sh_columns_place(const sh_columns *columns, int kind);
 
 /* Returns 1 if the deformations so far are large enough to distinguish column i from the spring. */
-int sh_column_is_distinct(const sh_regression_state *state, const sh_parameters *p, int i);
+int sh_column_is_distinct(const sh_columns *columns, const sh_signals *signals,
+                          const sh_parameters *p, int i);
 
 /* Sets the point from positions [rad] and set-point [1]. The point keeps the pointer `stop` [size: SH_WIDTHS]. */
 void sh_joint_point_at(sh_joint_point *point, const sh_columns *columns, const sh_parameters *p,
@@ -130,17 +132,19 @@ void sh_columns_move_stops(sh_real *stop, const sh_parameters *p, sh_real change
 /* Returns y [N.m], computed from the filtered signals. */
 sh_real sh_columns_y(const sh_parameters *p, const sh_filtered *f);
 
-/* Computes the row x [size: SH_MAX_ROW] from the mean of the filtered signals: first the columns, then the right-hand
- * sides. The last right-hand side is y minus the torque of the nominal curve.
+/* Computes the row x [size: SH_MAX_ROW] from the mean of the filtered signals and the last estimate: first the columns,
+ * then the right-hand sides. The last right-hand side is y minus the torque of the nominal curve.
  */
-void sh_columns_row(const sh_regression_state *state, const sh_parameters *p, sh_real *x);
+void sh_columns_row(const sh_columns *columns, const sh_mean *mean, const sh_feedback *feedback,
+                    const sh_parameters *p, sh_real *x);
 
 /* Detail 14: removes the noise of the motor torque, which y also contains, from the column of the motor torque in x.
  * The prediction error of y is epsilon [N.m]. Sets `left` to the remaining noise times R. Returns the change of the
  * predicted y [N.m].
  */
-sh_real sh_columns_remove_noise(const sh_regression_state *state, const sh_row_noise *noise,
-                                sh_real epsilon, sh_real *x, sh_column_noise *left);
+sh_real sh_columns_remove_noise(const sh_columns *columns, const sh_real *beta,
+                                const sh_row_noise *noise, sh_real epsilon, sh_real *x,
+                                sh_column_noise *left);
 
 /* ---- motion_sign.c: detail 3 ------------------------------------------------------------- */
 
@@ -157,30 +161,127 @@ void sh_motion_sign_step(sh_motion_sign *motion, sh_real position, sh_real count
 /* ---- signals.c --------------------------------------------------------------------------- */
 
 /* Designs the filters, which start with the next sample. */
-void sh_signals_start(sh_signals *signals, sh_history *history, const sh_parameters *p);
+void sh_signals_start(sh_signals *signals, const sh_parameters *p);
 
 /* Lets the estimate wait until the filters have settled. */
-void sh_signals_unsettle(sh_signals *signals, sh_history *history);
+void sh_signals_unsettle(sh_signals *signals);
 
-/* Updates the history and all filters by a sample. Sets the positions of the joint before and after the filters. */
-void sh_signals_take(sh_regression_state *state, const sh_parameters *p, const sh_measurement *z,
-                     sh_real set_point, sh_joint_point *at);
+/* Updates the history and all filters by a sample. Sets the positions of the joint before and after the filters. The
+ * last estimate, beta and feedback, gives the load that causes friction. Returns 1 if the filters started with this
+ * sample.
+ */
+int sh_signals_take(sh_signals *signals, const sh_columns *columns, const sh_real *beta,
+                    const sh_feedback *feedback, const sh_parameters *p, const sh_measurement *z,
+                    sh_real set_point, sh_joint_point *at);
+
+/* Lets the filters start with the next sample. */
+void sh_signals_begin_anew(sh_signals *signals);
+
+/* Sets the history to an earlier one, because the last sample is rejected. */
+void sh_signals_restore(sh_signals *signals, const sh_history *history);
+
+/* Counts a time [s] of the start, in which a row may show that the motor was moving. */
+void sh_signals_pass_start(sh_signals *signals, sh_real time);
+
+/* Sets states of the filters of all signals and `filtered` columns to 0 that are too small to matter. */
+void sh_signals_rest(sh_signals *signals, int filtered);
+
+/* Lets a time [s] pass. Returns 1 if the filters have settled. */
+static inline int sh_signals_settle(sh_signals *signals, sh_real time)
+{
+    const sh_real left = signals->history.settling - time;
+
+    signals->history.settling = left > 0 ? left : 0;
+    return !(left > 0);
+}
+
+/* Returns the noise variance of theta in the last sample [rad2], and updates the mean of this variance. */
+sh_real sh_signals_watch_theta(sh_signals *signals, const sh_parameters *p);
+
+/* ---- row.c: detail 16 -------------------------------------------------------------------- */
+
+/* Adds a sample to the mean: the filtered signals `now`, and the noise variance of theta [rad2]. If the mean is complete,
+ * sets the row, empties the mean, and returns 1.
+ */
+int sh_row_add(sh_row *row, sh_mean *mean, const sh_signals *signals, const sh_columns *columns,
+               const sh_feedback *feedback, const sh_parameters *p, const sh_filtered *now,
+               sh_real rough);
+
+/* Drops the samples of the mean. */
+void sh_mean_empty(sh_mean *mean);
+
+/* Sets the weight 1 / R of a row of `size` columns. Returns 0 if the numbers of the row are too large. */
+int sh_row_weigh(sh_row *row, const sh_row_noise *noise, int size);
+
+/* Sets epsilon, and removes the torque noise from the torque column (detail 14). */
+void sh_row_predict(sh_row *row, const sh_columns *columns, const sh_real *beta,
+                    const sh_row_noise *noise, sh_column_noise *left);
+
+/* Sets rho from 1 / (1 + rho), the result of sh_posterior_take. */
+void sh_row_compare(sh_row *row, sh_real share);
+
+/* Sets epsilon and rho to 0, while the filters settle. */
+void sh_row_drop_prediction(sh_row *row);
 
 /* ---- noise.c ----------------------------------------------------------------------------- */
 
-/* Returns the noise variance of theta in the last sample [rad2], and updates the mean of this variance. */
-sh_real sh_noise_watch_theta(sh_regression_state *state, const sh_parameters *p);
+/* Returns the variance of a row by friction whose sign is unknown [(N.m)2]; 0 if the torque is measured. */
+sh_real sh_noise_of_friction(const sh_signals *signals, const sh_columns *columns,
+                             const sh_posterior *posterior, const sh_real *beta,
+                             const sh_parameters *p);
 
-/* Detail 4: returns the variance of a row. The noise of theta is estimated from the last samples. */
-sh_row_noise sh_noise_of_row(const sh_regression_state *state, const sh_parameters *p);
+/* Detail 4: returns the variance of a row, of which `friction` is the result of sh_noise_of_friction. The noise of theta
+ * is estimated from the last samples.
+ */
+sh_row_noise sh_noise_of_row(const sh_signals *signals, const sh_feedback *feedback,
+                             sh_real friction, const sh_parameters *p);
 
 /* R times the false information in a row by rounding: about sigma (point 5) [rad2], about b (detail 7) [(N.m)2]. */
 sh_real sh_noise_of_deformation(const sh_signals *signals);
-sh_real sh_noise_of_inertia(const sh_regression_state *state, const sh_parameters *p);
+sh_real sh_noise_of_inertia(const sh_signals *signals, const sh_row *row, const sh_parameters *p);
 
-/* Returns 1 if the newest row shows that the motor was not at rest at the start (detail 12). */
-int sh_noise_contradicts_rest(sh_regression_state *state, const sh_parameters *p,
-                              const sh_row_noise *noise);
+/* Returns 1 if a row x at the start shows that the motor was not at rest (detail 12). */
+int sh_noise_contradicts_rest(const sh_signals *signals, const sh_columns *columns,
+                              const sh_posterior *posterior, const sh_real *beta, const sh_real *x,
+                              const sh_row_noise *noise, const sh_parameters *p);
+
+/* ---- samples.c --------------------------------------------------------------------------- */
+
+/* Initial precision of the data [1]: far below the precision 1 of a prior, but above rounding errors. */
+#define SH_LEAST_INFORMATION SH_FOR(SH_REAL, 1e-9, 1e-5f)
+
+/* Starts without information about the coefficients of the columns, of number `size`. */
+void sh_samples_start(sh_samples *samples, int size);
+
+/* Counts the noise in the columns of a row of weight w [1/(N.m)2]: `left` times R in the column of the torque, the
+ * information N about b [1], and the variance Q of N [1].
+ */
+void sh_samples_count_noise(sh_samples *samples, const sh_column_noise *left, sh_real w, sh_real N,
+                            sh_real Q);
+
+/* Updates the data by a row. Sets `rest`, unless it is a null pointer, to what the rows of the data before
+ * `first` leave of the row.
+ */
+void sh_samples_take(sh_samples *samples, const sh_row *row, int first, sh_sample *rest);
+
+/* Multiplies the weights of all samples by a factor, 0..1. */
+void sh_samples_forget(sh_samples *samples, sh_real factor);
+
+/* Adds process noise of a variance along v [size: size]. */
+void sh_samples_drift(sh_samples *samples, const sh_real *v, sh_real variance);
+
+/* Process noise of a variance in a column, in two steps: prepares it as a sample, or none if there is no such column;
+ * and takes the sample if there is one.
+ */
+void sh_sample_prepare(sh_sample *sample, const sh_information *a, int column, sh_real variance);
+void sh_sample_take(sh_sample *sample, sh_information *a);
+
+/* The same two steps for the data. */
+void sh_samples_prepare_drift(sh_samples *samples, int column, sh_real variance);
+void sh_samples_take_drift(sh_samples *samples);
+
+/* Replaces the data. The sums that describe the noise of single samples begin at 0. */
+void sh_samples_replace(sh_samples *samples, const sh_information *data);
 
 /* ---- posterior.c: prior and data, which are weighted by the misfit ------------------------ */
 
@@ -191,95 +292,214 @@ void sh_posterior_copy(sh_posterior *to, const sh_posterior *from);
  */
 sh_real sh_posterior_take(sh_posterior *posterior, const sh_real *x, int size, sh_real w);
 
-/* Detail 7: counts information [1] about b that is only rounding noise, and removes as much of this noise as possible.
- * The coefficient b of the last column does not become less certain than its prior, prior_B > 0.
+/* Detail 7: counts the information N [1] of a row about b that is only rounding noise, and the variance Q of N [1]. */
+void sh_posterior_count_noise(sh_posterior *posterior, sh_real N, sh_real Q);
+
+/* Detail 7: removes as much of the counted noise as possible. The coefficient b of the last column does not become less
+ * certain than its prior, prior_B > 0.
  */
-void sh_posterior_remove(sh_posterior *posterior, sh_real information, sh_real prior_B);
+void sh_posterior_remove(sh_posterior *posterior, sh_real prior_B);
 
 /* Detail 14: removes the noise of all samples from the information about column i of the posterior. */
 void sh_posterior_remove_noise(sh_posterior *posterior, sh_real prior_B, int i,
                                const sh_column_noise *noise);
 
-/* Sets beta and per_gain of all columns from the posterior; both are 0 for columns that are not used. */
-void sh_posterior_estimate(sh_regression_state *state, sh_real prior_B);
+/* Computes beta and per_gain of all columns [size: size] from the posterior; both are 0 for columns that are not used.
+ */
+void sh_posterior_estimate(const sh_posterior *posterior, int size, sh_real prior_B, sh_real *beta,
+                           sh_real *per_gain);
 
 /* Returns the variances of two linear combinations [size: count] of the coefficients of the first columns. */
 sh_variances sh_posterior_variances(const sh_posterior *posterior, sh_real prior_B,
                                     const sh_real *first, const sh_real *second, int count);
 
-/* ---- misfit.c ---------------------------------------------------------------------------- */
+/* ---- block.c: detail 8 ------------------------------------------------------------------- */
 
-void sh_blocks_start(sh_regression_state *state);
+/* Duration of a block [s]: several times 1/w, and short compared with a motion. */
+#define SH_BLOCK ((sh_real)0.05)
 
-/* Detail 8: adds the last row to the present block. */
-void sh_blocks_take(sh_regression_state *state);
+/* Sets the length of a block. */
+void sh_block_start(sh_block *block, const sh_signals *signals);
 
-static inline int sh_block_is_full(const sh_blocks *blocks)
+/* Drops the rows of the block, also if the next rows do not follow without a gap. */
+void sh_block_empty(sh_block *block);
+
+/* Adds a row of `size` columns. */
+void sh_block_take(sh_block *block, const sh_row *row, int size);
+
+static inline int sh_block_is_full(const sh_block *block)
 {
-    return blocks->rows >= blocks->length;
+    return block->rows >= block->length;
 }
 
-/* Makes step 0..3 after a row. If the block is full, each step updates one regression by the mean row of the block. */
-void sh_blocks_end(sh_regression_state *state, const sh_parameters *p, int step);
-
-/* Drops the samples of the present block if the next samples do not follow without a gap. */
-void sh_blocks_interrupt(sh_blocks *blocks);
-
-/* Detail 8: the two functions compute the misfit of the recent blocks, and misfit and variance_factor of all blocks. */
-void sh_misfit_judge_recent(sh_regression_state *state, const sh_parameters *p);
-void sh_misfit_judge(sh_regression_state *state, const sh_parameters *p);
-
-/* Adds process noise to a column: an even step prepares a sample, and an odd step takes the sample if there is one. */
-void sh_drift_step(sh_refit *refit, sh_information *a, int column, sh_real variance, int step);
-
-/* Makes step 0..7 of detail 10: lets friction drift for `time` [s]. Every second step takes the sample of the previous
- * step. If the blocks contradict each other less with the drift, friction also drifts in the data.
+/* Sets the mean row of a full block [size: size + SH_RIGHT_SIDES]. Returns its weight, 1 / variance; 0 if it is too
+ * large.
  */
-void sh_friction_drift(sh_regression_state *state, sh_real time, int step);
+sh_real sh_block_mean(const sh_block *block, const sh_signals *signals, int size,
+                      const sh_parameters *p, sh_real *mean);
 
-/* Details 9 and 11: forgets data that contradict the model, and lets the curve drift along the last row for `time` [s].
+/* Returns the number of blocks without lasting errors that have the same information, at most 1. */
+sh_real sh_block_count(const sh_block *block);
+
+/* ---- misfit.c: details 8 and 9 ----------------------------------------------------------- */
+
+/* Variance factor above which data are forgotten, and a doubt is reported as a misfit [1]. */
+#define SH_CONTRADICTION ((sh_real)1.5)
+
+void sh_misfit_start(sh_misfit *misfit, int size);
+
+/* Updates the recent blocks by the mean row of a block with weight w, which counts as `count` blocks and `time` [s]. */
+void sh_misfit_take(sh_misfit *misfit, const sh_real *mean, sh_real w, sh_real count, sh_real time);
+
+/* Updates the usual misfit, and the number of blocks in it, after a block. */
+void sh_misfit_learn(sh_misfit *misfit);
+
+/* Drops the recent blocks after a change of the joint. */
+void sh_misfit_begin_anew(sh_misfit *misfit);
+
+/* Returns the mean of a number of blocks, at least 1, after one more value. The value counts as at most `most` times the
+ * mean.
  */
-void sh_forget(sh_regression_state *state, const sh_parameters *p, sh_real time);
+sh_real sh_usual(sh_real mean, sh_real value, sh_real most, sh_real blocks);
 
-/* ---- change.c: detail 15 ----------------------------------------------------------------- */
+/* Returns the largest sum of N squared errors over their variances that may be due to chance. */
+sh_real sh_largest_by_chance(sh_real N);
 
-void sh_change_start(sh_regression_state *state);
+/* Computes the misfit of the recent blocks, unless friction or the curve drifts. */
+void sh_misfit_judge_recent(sh_misfit *misfit, const sh_real *beta, int drifts);
 
-/* Returns 1 if the hypothesis of a change begins anew before the last block, and without this block. The argument
- * `error` is the squared error of the block, divided by its variance [1].
+/* Computes the misfit and the variance factor of all N blocks with the coefficients beta, of which a number of
+ * parameters is estimated. The matrix of the blocks also contains the share `prior` of the prior, 0..1.
  */
-int sh_change_begins_anew(sh_regression_state *state, sh_real error);
+void sh_misfit_judge(sh_misfit *misfit, const sh_information *blocks, sh_real prior, sh_real N,
+                     const sh_real *beta, int parameters, const sh_parameters *p);
 
-/* Compares three hypotheses by squared errors divided by variances: no change, another spring, other friction. */
-void sh_change_judge(sh_regression_state *state, const sh_parameters *p, sh_real before,
-                     sh_real spring, sh_real friction);
+/* Returns 1 if the misfit is far above the usual one. */
+int sh_misfit_is_sudden(const sh_misfit *misfit);
 
-/* Makes step 0, 1 or 2 after a row that does not complete a block. If the hypothesis of other friction has just begun,
- * the columns of friction get the variance of their priors. Returns 0 if the step changes nothing.
+/* Forgets the oldest of the recent blocks. Returns the duration of the blocks since the last call [s]. */
+sh_real sh_misfit_forget_recent(sh_misfit *misfit, const sh_parameters *p);
+
+/* Returns 1 if N blocks contradict the model so far that data are forgotten. */
+int sh_misfit_contradicts(const sh_misfit *misfit, sh_real N, int parameters);
+
+/* Returns the factor by which data are forgotten after a motion of the duration `moving` [s], 0..1. */
+sh_real sh_misfit_forgetting(const sh_misfit *misfit, sh_real moving, const sh_parameters *p);
+
+/* ---- bank.c: details 10 and 15 ----------------------------------------------------------- */
+
+/* Evidence above which the estimate is in doubt, and evidence above which a change is detected [1]. The second number
+ * is multiplied by the square root of the usual squared error. Without a change, one of 3860 runs of 22 s with every
+ * misfit reported a change. With 60 in place of 75, one of 1930 runs reported a change.
  */
-int sh_change_widens_friction(sh_regression_state *state, int step);
+#define SH_MAY_HAVE_CHANGED ((sh_real)20)
+#define SH_HAS_CHANGED ((sh_real)75)
 
-/* Returns the misfit divided by the usual misfit [1]. */
-sh_real sh_change_misfit(const sh_regression_state *state);
+/* What the hypotheses of the bank show. */
+typedef enum {
+    SH_FOUND_NOTHING,
+    SH_FOUND_SPRING,  /* the spring has changed */
+    SH_FOUND_FRICTION /* friction has changed */
+} sh_finding;
 
-/* Returns 1 if the present estimate is in doubt because of a possible change of the joint. */
-int sh_change_is_likely(const sh_regression_state *state);
+void sh_bank_start(sh_bank *bank, int size);
+
+/* Returns the blocks under the hypothesis that holds now. */
+const sh_information *sh_bank_present(const sh_bank *bank);
+
+/* Take the mean row of a block of weight w for one hypothesis, in this order. */
+void sh_bank_take_for_spring(sh_bank *bank, const sh_columns *columns, const sh_real *mean,
+                             sh_real w);
+void sh_bank_take_as_before(sh_bank *bank, const sh_real *mean, sh_real w);
+void sh_bank_take_for_friction(sh_bank *bank, const sh_real *mean, sh_real w);
+
+/* Counts the last block as `count` blocks. */
+void sh_bank_count(sh_bank *bank, sh_real count);
+
+/* Compares the hypotheses by their errors of the last block, after it was counted. The usual misfit is a mean over
+ * `judged` blocks.
+ */
+sh_finding sh_bank_judge(sh_bank *bank, const sh_columns *columns, sh_real judged,
+                         sh_real usual_misfit, const sh_parameters *p);
+
+/* Replaces the hypothesis `constant` by what was found. */
+void sh_bank_adopt(sh_bank *bank, const sh_columns *columns, sh_finding found);
+
+/* Tells the bank that the estimate contains the adopted change. */
+void sh_bank_followed(sh_bank *bank);
+
+/* Returns 1 if the joint may have changed, so that the present estimate is in doubt. */
+static inline int sh_bank_doubts(const sh_bank *bank)
+{
+    return bank->following || bank->evidence > SH_MAY_HAVE_CHANGED;
+}
+
+/* Multiplies the weights of all blocks by a factor, 0..1, except for the hypothesis of another spring. */
+void sh_bank_forget(sh_bank *bank, sh_real factor);
+
+/* Adds process noise of a variance along v [size: size]. */
+void sh_bank_drift(sh_bank *bank, const sh_real *v, sh_real variance);
+
+/* Lets friction drift in two steps, see sh_sample_prepare. */
+void sh_bank_prepare_drift(sh_bank *bank, int column, sh_real variance);
+void sh_bank_take_drift(sh_bank *bank);
+
+/* Decides by the residuals whether friction drifts, except during a test of other friction. */
+void sh_bank_judge_drift(sh_bank *bank);
+
+/* While the test of other friction begins, makes step 0, 1 or 2 after a row that does not complete a block: gives a
+ * column of friction the variance of its prior. Returns 0 if nothing was left to do.
+ */
+int sh_bank_widen_friction(sh_bank *bank, const sh_columns *columns, int step);
 
 /* ---- refit.c: detail 6 ------------------------------------------------------------------- */
 
-/* Starts posterior and refit from the prior. */
-void sh_refit_start(sh_regression_state *state, const sh_parameters *p);
+/* Starts a refit of the samples with the same trial. */
+void sh_refit_begin(sh_refit *refit, const sh_columns *columns, const sh_signals *signals,
+                    const sh_samples *samples, sh_real variance_factor, const sh_parameters *p);
 
-/* Starts the refit again, with the same trial. */
-void sh_refit_begin(sh_regression_state *state, const sh_parameters *p);
+/* Reads one or two rows of the data. Returns 0 if all rows have been read. */
+int sh_refit_read(sh_refit *refit, const sh_information *data);
 
-/* Updates the data of all samples by the newest row. */
-void sh_data_take(sh_regression_state *state);
+/* Counts the time [s] of a row. */
+void sh_refit_wait(sh_refit *refit, sh_real time);
 
-/* After sh_data_take, updates the posterior of a refit by the remaining part of the newest row. */
-void sh_refit_take(sh_regression_state *state);
+/* Updates the posterior by the member `rest` of the refit, the result of sh_samples_take for a row of `size` columns, if
+ * the posterior is open.
+ */
+void sh_refit_take_rest(sh_refit *refit, int size);
 
-/* Makes one step of a refit: reads one or two rows of the data, or makes the next end step. Returns SH_NEW_*. */
-int sh_refit_advance(sh_regression_state *state, const sh_parameters *p);
+/* After a trial, decides whether the group is used, by N blocks. */
+void sh_refit_decide_about_group(sh_refit *refit, const sh_columns *columns, sh_real N);
+
+/* Removes noise from the columns of the posterior. */
+void sh_refit_remove_noise(sh_refit *refit, const sh_columns *columns, const sh_column_noise *noise,
+                           const sh_parameters *p);
+
+/* Lets the next refit be no trial. */
+void sh_refit_drop_trial(sh_refit *refit);
+
+/* Lets the posterior take no more rows. */
+void sh_refit_close(sh_refit *refit);
+
+/* Ends a refit and chooses the next trial after N blocks. Returns 1 if there is one. */
+int sh_refit_end(sh_refit *refit, const sh_columns *columns, const sh_signals *signals, sh_real N,
+                 const sh_parameters *p);
+
+/* Returns 1 if the next refit may begin after N blocks. */
+int sh_refit_is_due(const sh_refit *refit, sh_real N);
+
+/* ---- schedule.c: detail 16, a part of the tick ------------------------------------------- */
+
+/* Starts the first refit, and the posterior from the prior. */
+void sh_schedule_start(sh_regression_state *state, const sh_parameters *p);
+
+/* There is a new row, whose jobs begin. */
+void sh_schedule_row(sh_schedule *schedule);
+
+/* Makes the jobs of the last row that belong to this tick. The ticks until the next row share all jobs. Returns
+ * SH_NEW_*.
+ */
+int sh_schedule_advance(sh_regression_state *state, const sh_parameters *p);
 
 #endif

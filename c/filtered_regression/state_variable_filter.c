@@ -1,6 +1,8 @@
+#include "real_math.h"
 #include "state_variable_filter.h"
 
-#include "constants.h"
+/* Largest number of steps of a simulated filter response: the rows, and 60 time constants with the least w T, 1e-4. */
+enum { SH_MOST_SAMPLES = 1000000 };
 
 /* Limit far below the resolution of any signal. The state of a filter with a constant input would decay to far smaller
  * numbers, with which processors compute slowly.

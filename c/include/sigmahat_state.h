@@ -164,6 +164,17 @@ typedef struct {
     sh_real output[SH_FILTERS], first[SH_FILTERS], second[SH_FILTERS];
 } sh_filtered;
 
+/* Data of the past that a gap in the samples does not reset. A rejected sample does not change these data. */
+typedef struct {
+    sh_real stop[SH_WIDTHS];       /* states of the stop operators of hysteresis [rad] */
+    sh_real phi, phi_min, phi_max; /* deformation: last, least and largest [rad] */
+    sh_real resting;               /* samples since phi changed */
+    sh_real unsure;                /* samples for which the sign of the velocity has been unknown */
+    sh_real settling;              /* time until the filters have forgotten their start [s] */
+    sh_real starting; /* time left in which samples may show that the motor was moving [s] */
+    sh_real rough;    /* mean square of the noise of theta, from its fourth differences [rad2] */
+} sh_history;
+
 /* Signals and their filters, which all have the same design. */
 typedef struct {
     int begun;              /* 0: the filters start with the next sample */
@@ -176,19 +187,16 @@ typedef struct {
     sh_motion_sign motion;
     sh_real torque_before;   /* torque of the last sample [N.m] */
     sh_real theta_before[5]; /* the last positions, for differences [rad] */
+    sh_history history;
 } sh_signals;
 
-/* Data of the past that a gap in the samples does not reset. A rejected sample does not change these data. */
+/* What the next row needs of the estimate at the last tick. */
 typedef struct {
-    sh_real stop[SH_WIDTHS];       /* states of the stop operators of hysteresis [rad] */
-    sh_real phi, phi_min, phi_max; /* deformation: last, least and largest [rad] */
-    sh_real resting;               /* samples since phi changed */
-    sh_real unsure;                /* samples for which the sign of the velocity has been unknown */
-    sh_real settling;              /* time until the filters have forgotten their start [s] */
-    sh_real starting;   /* time left in which samples may show that the motor was moving [s] */
-    sh_real rough;      /* mean square of the noise of theta, from its fourth differences [rad2] */
-    sh_real change_age; /* time since the last change of the spring [s], -1 if there was none */
-} sh_history;
+    sh_real y;           /* y, less the error of the last row [N.m] */
+    sh_real sigma;       /* stiffness [N.m/rad] */
+    sh_real delay;       /* of the torque [s] */
+    int stiffness_known; /* 1: columns that need the stiffness have an effect */
+} sh_feedback;
 
 /* Sums over the samples of the next row. */
 typedef struct {
@@ -199,9 +207,8 @@ typedef struct {
     sh_real output[SH_MAX_COLUMNS]; /* outputs of the filters of the columns */
 } sh_mean;
 
-/* The last row. The steps that process this row are distributed over the ticks until the next row. */
+/* The last row. */
 typedef struct {
-    int tick;              /* ticks since the row, up to the number in which its steps are done */
     sh_real x[SH_MAX_ROW]; /* columns, then right-hand sides */
     sh_real w;             /* weight [1/(N.m)2] */
     sh_real lasting;       /* factor in 1/w by errors that last, >= 1 */
@@ -228,90 +235,109 @@ typedef struct {
     sh_real spread;               /* variance of both, as it acts on the estimate of b [1] */
 } sh_posterior;
 
-/* Means over blocks of samples, misfit.c. */
+/* A row that a later step takes, and its weight, which is negative for process noise; 0: there is none. */
 typedef struct {
-    sh_information constant;     /* prior and blocks, parameters constant */
-    sh_information drifting;     /* the same, friction may drift */
-    sh_information recent;       /* prior and the last blocks */
-    sh_real recent_misfit;       /* their reduced chi-square, if it is beyond chance; else 0 */
-    sh_real prior;               /* share of the prior that is left in the first two, 0..1 */
-    sh_real count, recent_count; /* effective number of blocks [1] */
-    sh_real duration; /* time of counted blocks since the last refit that was no trial [s] */
-    sh_real length;   /* rows of a block */
+    sh_real x[SH_MAX_ROW], w;
+} sh_sample;
+
+/* All samples, samples.c. */
+typedef struct {
+    sh_information data;
+    sh_real weights;         /* sum of the weights [1/(N.m)2] */
+    sh_real surplus, spread; /* of all samples, see sh_posterior */
+    sh_column_noise noise;
+    sh_sample drift; /* process noise of friction for the next step */
+} sh_samples;
+
+/* The present block of rows, block.c. */
+typedef struct {
+    sh_real length;                /* rows of a block */
     sh_real energy, energy_second; /* share of white noise that H, and s^2 H [1/s4], leave in a
                                       block */
-    /* The present block: */
-    sh_real rows;
-    sh_real sum[SH_MAX_ROW]; /* of weighted rows */
-    sh_real error; /* square of the error of the prediction as before, over its variance */
+    sh_real rows;                  /* so far */
+    sh_real sum[SH_MAX_ROW];       /* of weighted rows */
     sh_real weight, weight_window; /* sums of w h and w h^2, for the window h */
     sh_real window, window_square; /* sums of h and h^2 */
     sh_real independent; /* sum of h^2 over the increase of the variance by errors that last */
     sh_real rounding;    /* sum of mean squares of the rounding of theta [rad2] */
-} sh_blocks;
+} sh_block;
 
-/* Whether the spring or friction has changed, change.c. */
+/* Hypotheses about the joint, which predict each block, bank.c. */
 typedef struct {
-    sh_information changed; /* blocks under the hypothesis of another spring */
-    int following;          /* 1: a change was detected, and the estimate does not contain it yet */
-    sh_real blocks;         /* since the hypothesis began */
-    sh_real level,
-        judged; /* mean square of a block's error over its variance, and of how many blocks */
-    sh_real usual_misfit; /* usual misfit of the estimate: mean over as many blocks [1] */
-    sh_real evidence;     /* of the change [1] */
-    /* Blocks since the hypothesis of other friction began, in blocks.drifting; 0: it has not. */
-    sh_real friction_blocks;
-    int widened;        /* next column of friction that gets the variance of its prior */
-    sh_real preference; /* evidence for another spring over other friction */
-    /* Of the last block with another spring, and with other friction: squares over variances. */
-    sh_real error, friction_error;
-} sh_change;
+    sh_information constant;                     /* prior and blocks, if the joint is as before */
+    sh_information friction;                     /* the same, if friction drifts or has changed */
+    sh_information spring;                       /* the same, if the spring has changed */
+    sh_real error, friction_error, spring_error; /* of the last block, as the hypotheses
+                                                    predicted it: squares over variances */
+    sh_real prior; /* share of the prior that is left in the first two, 0..1 */
+    sh_real count; /* effective number of blocks [1] */
+    sh_real level; /* mean square of a block's error over its variance */
+    /* Another spring: */
+    sh_real blocks;   /* since the hypothesis began */
+    sh_real evidence; /* of the change [1] */
+    int following;    /* 1: a change was adopted, and the estimate does not contain it yet */
+    /* Other friction: */
+    int friction_drifts;     /* 1: the data show that friction changes slowly */
+    sh_real friction_blocks; /* since the test of a sudden change began; 0: it has not */
+    int widened;             /* next column of friction that gets the variance of its prior */
+    sh_real preference;      /* evidence for another spring over other friction */
+    sh_sample drift;         /* process noise of friction for the next step */
+} sh_bank;
+
+/* How far the blocks contradict the model, misfit.c. */
+typedef struct {
+    sh_information recent;   /* prior and the last blocks */
+    sh_real recent_count;    /* effective number of blocks in it [1] */
+    sh_real recent_square;   /* their reduced chi-square, if it is beyond chance; else 0 */
+    sh_real square;          /* reduced chi-square of the blocks [1] */
+    sh_real variance_factor; /* factor of the variances, kappa^2 [1] */
+    sh_real usual, judged;   /* usual misfit: mean, and of how many blocks [1] */
+    sh_real duration;        /* time of counted blocks since the last refit that was no trial [s] */
+} sh_misfit;
 
 /* The next posterior while it is computed from all data, refit.c. */
 typedef struct {
     sh_posterior posterior;
-    int unread; /* rows of the data, the first ones, that have not been read */
-    int step;   /* next one of what a refit does behind the rows */
-    /* Sample for the next step, and its weight: what the data left of the newest row, or process noise of friction. */
-    sh_real x[SH_MAX_ROW], w;
+    int unread;     /* rows of the data, the first ones, that have not been read */
+    int is_open;    /* 1: the posterior takes new rows; 0: it is in use, or a trial that is over */
+    sh_sample rest; /* what the rows of the data that have not been read left of the newest row */
     int trial; /* group that the refit tries, in its last steps of the next one; 0: none, it changes
                   the estimate */
     int last_trial;      /* group that was tried last */
     int used[SH_GROUPS]; /* 1: the group is used */
-    sh_real time;        /* since the last refit but trials [s] */
     sh_real pause;       /* since the end of the last refit [s] */
 } sh_refit;
 
-/* The method. */
+/* What the tick does next, schedule.c. */
 typedef struct {
-    int modality;        /* of the last good sample */
-    int friction_drifts; /* 1: the data show that friction changes */
+    int tick;     /* ticks since the row, up to the number in which its jobs are done */
+    int job;      /* next job of the refit behind the rows of the data */
+    sh_real time; /* since the last refit that was no trial [s] */
+} sh_schedule;
+
+/* The method: its parts, and what the tick itself knows. */
+typedef struct {
+    int modality; /* of the last good sample */
     sh_columns columns;
     sh_signals signals;
-    sh_history history;
     sh_mean mean;
     sh_row row;
-    sh_information data;    /* of all samples */
+    sh_samples samples;
     sh_posterior posterior; /* the estimate */
     sh_refit refit;
-    sh_blocks blocks;
-    sh_change change;
-    sh_real surplus, spread; /* of all samples, see sh_posterior */
-    sh_column_noise noise;   /* of all samples */
-    sh_real weights;         /* sum of the weights of all samples [1/(N.m)2] */
-    sh_real misfit,
-        variance_factor;  /* reduced chi-square of the blocks, factor of the variances [1] */
-    sh_real friction_std; /* std deviation of D_theta's relative error at the last refit [1] */
-    /* The last estimate, on which the next row depends: */
+    sh_block block;
+    sh_bank bank;
+    sh_misfit misfit;
+    sh_schedule schedule;
+    sh_feedback feedback;
+    /* The last estimate: */
     sh_real beta[SH_MAX_COLUMNS];     /* estimate by column, in std deviations of the priors */
     sh_real per_gain[SH_MAX_COLUMNS]; /* change of beta with the relative gain of the torque */
     sh_variances variances;           /* of the torque of the spring [(N.m)2], and of the stiffness
                                          [(N.m/rad)2], if the gain is right */
-    sh_real y;                        /* y of this tick, less the error of the last row [N.m] */
-    sh_real sigma;                    /* stiffness [N.m/rad] */
-    sh_real delay;                    /* of the torque [s] */
     sh_real viscous, inertia;         /* relative errors of motor.D_theta and motor.B [1] */
-    int stiffness_known;              /* 1: columns that need the stiffness have an effect */
+    sh_real friction_std; /* std deviation of D_theta's relative error at the last refit [1] */
+    sh_real change_age;   /* time since the last change of the spring [s], -1 if there was none */
 } sh_regression_state;
 
 /* The estimator. */

@@ -35,7 +35,7 @@ def pieces(torque: float) -> list[Array]:
 def positive(e: Estimator) -> bool:
     """Whether covariance or information, of which D is a factor, is positive definite."""
     method = e.state.method
-    parts = [method.regression.posterior.information, method.regression.data]
+    parts = [method.regression.posterior.information, method.regression.samples.data]
     if e.parameters.method == 1:
         parts = [method.paper2011.rls.P]
     return all(np.min(np.array(list(each.D)[: each.size], np.longdouble)) > 0 for each in parts)

@@ -51,13 +51,13 @@ CONFIGURED = {"method": FILTERED_REGRESSION, "rls.n": 3, "prior.B": 0.1}
 SIZE = 33  # number of columns with these parameters
 LIMITS: dict[str, tuple[int, int]] = {
     "modality": (1, 3),
-    **dict.fromkeys(("friction_drifts", "stiffness_known", "signals.begun"), (0, 1)),
-    **dict.fromkeys(("refit.used", "change.following"), (0, 1)),
+    **dict.fromkeys(("bank.friction_drifts", "feedback.stiffness_known", "signals.begun"), (0, 1)),
+    **dict.fromkeys(("refit.used", "bank.following", "refit.is_open"), (0, 1)),
     "refit.unread": (0, SIZE),
-    "refit.step": (0, 16),
+    "schedule.job": (0, 16),
     **dict.fromkeys(("refit.trial", "refit.last_trial"), (0, 6)),
-    **dict.fromkeys(("data.size", "change.changed.size", "columns.size"), (SIZE, SIZE)),
-    **{f"blocks.{sums}.size": (SIZE, SIZE) for sums in ("constant", "drifting", "recent")},
+    **dict.fromkeys(("samples.data.size", "misfit.recent.size", "columns.size"), (SIZE, SIZE)),
+    **{f"bank.{one}.size": (SIZE, SIZE) for one in ("constant", "friction", "spring")},
     **{f"{one}.information.size": (1, SIZE) for one in ("posterior", "refit.posterior")},
     **{f"{one}.column": (0, SIZE - 1) for one in ("posterior", "refit.posterior")},
     "columns.has_nominal": (0, 0),
@@ -66,7 +66,7 @@ LIMITS: dict[str, tuple[int, int]] = {
 OTHERS = (
     *("columns.spring", "columns.knees", "columns.filtered", "columns.friction"),
     *("columns.inertia", "columns.column.kind", "columns.column.i", "columns.column.j"),
-    *("change.widened", "signals.decimation", "mean.samples", "row.tick"),
+    *("bank.widened", "signals.decimation", "mean.samples", "schedule.tick"),
 )
 """Other integers of this state, none of which can be below 0 or above 64."""
 

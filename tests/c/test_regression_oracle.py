@@ -57,7 +57,7 @@ def check(
         assert np.all(error <= 1e-7 * largest), (name, np.max(error / np.maximum(largest, 1e-300)))
     regression = estimator.state.method.regression
     assert list(regression.refit.used)[1:] == oracle.used[1:]
-    assert bool(regression.friction_drifts) == oracle.friction_drifts
+    assert bool(regression.bank.friction_drifts) == oracle.friction_drifts
     return oracle, found
 
 

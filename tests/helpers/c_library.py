@@ -23,7 +23,7 @@ FILE = f"libsigmahat_test_driver{'.dylib' if sys.platform == 'darwin' else '.so'
 REALS = ("double", "float")
 LONG = "_Float64x"
 """long double, for which glibc has functions by this name."""
-_WITHOUT_DECLARATIONS = ("constants.h", "real_math.h", "pair.h")
+_WITHOUT_DECLARATIONS = ("real_math.h", "pair.h")
 """Headers with nothing but macros and inline functions. These headers include headers of the
 standard library, which cffi cannot read.
 """

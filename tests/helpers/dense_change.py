@@ -1,4 +1,4 @@
-"""The hypotheses of a change in numpy; C code: c/filtered_regression/change.c."""
+"""The hypotheses of a change in numpy; C code: c/filtered_regression/bank.c."""
 
 from copy import deepcopy
 from typing import TYPE_CHECKING

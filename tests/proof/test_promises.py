@@ -70,8 +70,8 @@ def informations(state: Any) -> Iterator[tuple[Any, float]]:
     regression = state.method.regression
     for posterior in (regression.posterior, regression.refit.posterior):
         yield posterior.information, 1.0
-    yield regression.blocks.recent, 1.0
-    for data in (regression.data, regression.blocks.constant, regression.blocks.drifting):
+    yield regression.misfit.recent, 1.0
+    for data in (regression.samples.data, regression.bank.constant, regression.bank.friction):
         yield data, 0.0  # process noise may reduce it below what it began with
 
 
@@ -83,14 +83,15 @@ def check_regression(state: Any) -> None:
         assert np.all(np.isfinite(D) & (D > 0) & (least <= D))
         assert np.all(np.isfinite(U))
         assert math.isfinite(a.squares)
-    numbers = (regression.sigma, regression.y, regression.delay)
-    assert all(map(math.isfinite, (*numbers, *regression.beta, *regression.blocks.sum)))
+    feedback = regression.feedback
+    numbers = (feedback.sigma, feedback.y, feedback.delay)
+    assert all(map(math.isfinite, (*numbers, *regression.beta, *regression.block.sum)))
     for posterior in (regression.posterior, regression.refit.posterior):
         assert 0 < posterior.weight <= 1
         for number in (posterior.removed, posterior.spread, posterior.surplus):
             assert 0 <= number < math.inf
-    assert 1 <= regression.variance_factor < math.inf
-    assert 0 <= regression.misfit < math.inf
+    assert 1 <= regression.misfit.variance_factor < math.inf
+    assert 0 <= regression.misfit.square < math.inf
     assert abs(regression.signals.motion.direction) <= 1
 
 

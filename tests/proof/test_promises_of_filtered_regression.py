@@ -87,7 +87,8 @@ def test_motion_sign(c: Library, data: st.DataObject) -> None:
 def test_the_removal_of_rounding_leaves_the_prior(c: Library, D: float) -> None:
     posterior = c.new("sh_posterior", weight=1.0)
     c.lib.sh_information_start(c.ffi.addressof(posterior, "information"), 1, D)
-    c.lib.sh_posterior_remove(posterior, 2 * D, 0.1)
+    c.lib.sh_posterior_count_noise(posterior, 2 * D, 0.0)
+    c.lib.sh_posterior_remove(posterior, 0.1)
     assert posterior.information.D[0] == 1
     assert all(map(math.isfinite, posterior.information.U[0:2]))
 
@@ -122,8 +123,8 @@ def test_a_weight_whose_square_overflows_leaves_the_blocks_finite(c: Library) ->
     z = np.zeros((2000, 5))
     z[:, 1], z[:, 4] = 1e-4 * np.sin(0.01 * k), 1e-2 * np.sin(0.01 * k)
     estimator.run(z)
-    blocks = estimator.state.method.regression.blocks
-    assert np.all(np.isfinite(factors(blocks.constant)[1]))
+    bank = estimator.state.method.regression.bank
+    assert np.all(np.isfinite(factors(bank.constant)[1]))
 
 
 def test_a_stiffness_that_is_too_large_for_the_next_row_does_not_block_all_rows(c: Library) -> None:
