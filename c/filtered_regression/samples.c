@@ -23,11 +23,12 @@ void sh_samples_take(sh_samples *samples, const sh_row *row, int first, sh_sampl
 {
     const int size = samples->data.size;
     sh_real x[SH_MAX_ROW], w;
-    int i;
 
     (void)memcpy(x, row->x, sizeof x);
     w = sh_information_take_rows(&samples->data, 0, first, x, row->w);
     if (rest) {
+        int i;
+
         rest->w = first < size ? w : 0;
         (void)memcpy(rest->x, x, sizeof x);
         for (i = 0; i < first; ++i) {
