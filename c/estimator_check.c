@@ -14,7 +14,7 @@ int sh_estimator_check(const sh_estimator *estimator, const sh_parameters *p)
     if (sh_method_of(p) == NULL || estimator->started < 0 || estimator->started > 1) {
         return 1;
     }
-    if (!isfinite(estimator->skipped) || estimator->skipped < 0) {
+    if (estimator->skipped < 0 || estimator->skipped > SH_MOST_TICKS) {
         return 1;
     }
     return STATE_CHECKS[p->method](estimator, p);

@@ -49,6 +49,9 @@ void sh_least_squares_start(sh_least_squares *rls, int size, const sh_real *eta_
 int sh_least_squares_update(sh_least_squares *rls, int kind, sh_real factor, const sh_real *F,
                             sh_real y, sh_innovation *innovation);
 
+/* Returns the variance F' P F. F [size: size] */
+sh_real sh_least_squares_variance(const sh_least_squares *rls, const sh_real *F);
+
 /* Moves the estimate: eta += c v. v [size: size] */
 void sh_least_squares_move(sh_least_squares *rls, sh_real c, const sh_real *v);
 

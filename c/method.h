@@ -36,7 +36,8 @@ typedef struct {
      *
      * Returns 1. Returns 0 if a number is too large. In this case, estimate is unchanged, and the filters of Paper2011
      * are unchanged, too. FilteredRegression starts its filters again as after a gap, but keeps the changes of its
-     * regression by this sample.
+     * regression by this sample. FilteredRegression also returns 0 for a sample that no joint can give. Then only doubt
+     * and confident change, and the filters start again with the next good sample.
      */
     int (*tick)(sh_estimator *estimator, const sh_parameters *p, const sh_measurement *z,
                 sh_real set_point, sh_estimate *estimate);
@@ -56,6 +57,9 @@ typedef struct {
     extern const sh_method block;                                                                  \
     int block##_check_state(const sh_estimator *estimator, const sh_parameters *p);
 SH_METHODS(SH_METHOD_DECLARATION)
+
+/* Largest number of ticks that is counted; at 1 kHz, 11 days. */
+#define SH_MOST_TICKS 1000000000
 
 /* The method that the parameters choose, NULL if there is none of this number. */
 const sh_method *sh_method_of(const sh_parameters *p);

@@ -38,10 +38,9 @@ static inline sh_pair sh_pair_multiply(sh_pair a, sh_pair b)
     return a * b;
 }
 
-/* Sum of the two numbers of a, and that of b. */
-static inline sh_pair sh_pair_sums(sh_pair a, sh_pair b)
+static inline sh_real sh_pair_sum(sh_pair a)
 {
-    return sh_pair_of(a[0], b[0]) + sh_pair_of(a[1], b[1]);
+    return a[0] + a[1];
 }
 
 static inline sh_pair sh_pair_load(const sh_real *from)
@@ -85,10 +84,9 @@ static inline sh_pair sh_pair_multiply(sh_pair a, sh_pair b)
     return sh_pair_of(a.first * b.first, a.second * b.second);
 }
 
-/* Sum of the two numbers of a, and that of b. */
-static inline sh_pair sh_pair_sums(sh_pair a, sh_pair b)
+static inline sh_real sh_pair_sum(sh_pair a)
 {
-    return sh_pair_of(a.first + a.second, b.first + b.second);
+    return a.first + a.second;
 }
 
 static inline sh_pair sh_pair_load(const sh_real *from)
@@ -114,7 +112,6 @@ static inline void sh_scalar_products(const sh_real *a, const sh_real *b, const 
                                       int size, sh_real *ab, sh_real *ac)
 {
     sh_pair of_b = sh_pair_both(0), of_c = of_b;
-    sh_real sums[2];
     int i;
 
     for (i = 0; i + 1 < size; i += 2) {
@@ -129,9 +126,8 @@ static inline void sh_scalar_products(const sh_real *a, const sh_real *b, const 
         of_b = sh_pair_add(of_b, sh_pair_multiply(a_i, sh_pair_of(b[i], 0)));
         of_c = sh_pair_add(of_c, sh_pair_multiply(a_i, sh_pair_of(c[i], 0)));
     }
-    sh_pair_store(sums, sh_pair_sums(of_b, of_c));
-    *ab = sums[0];
-    *ac = sums[1];
+    *ab = sh_pair_sum(of_b);
+    *ac = sh_pair_sum(of_c);
 }
 
 #endif

@@ -66,7 +66,9 @@ int sh_estimator_tick(sh_estimator *estimator, const sh_parameters *p, const sh_
     if (!is_measurement(z->theta) || !is_measurement(z->q) || !is_measurement(z->theta_c) ||
         !is_measurement(z->tau) || !is_measurement(z->tau_e_sensor) || !isfinite(set_point) ||
         !sh_method_of(p)->tick(estimator, p, z, set_point, estimate)) {
-        estimator->skipped += 1;
+        if (estimator->skipped < SH_MOST_TICKS) {
+            estimator->skipped += 1;
+        }
         estimate->valid = 0;
         return 1;
     }

@@ -63,8 +63,9 @@ static sh_measurement extrapolate(const sh_estimator_fmu *fmu, double after)
     return z;
 }
 
-/* Logs why a tick was skipped: one input is out of range, or the regression overflows. */
-static void log_skipped(const sh_measurement *z, double t, const char *who, sh_instance *log)
+/* Logs why a tick was skipped: one input is out of range, the sample is an outlier, or the regression overflows. */
+static void log_skipped(const sh_measurement *z, int doubt, double t, const char *who,
+                        sh_instance *log)
 {
     static const char *const NAMES[] = {"theta", "q", "theta_c", "tau", "tau_e_sensor"};
     const double values[] = {z->theta, z->q, z->theta_c, z->tau, z->tau_e_sensor};
@@ -80,10 +81,13 @@ static void log_skipped(const sh_measurement *z, double t, const char *who, sh_i
             return;
         }
     }
-    sh_report(log, SH_WARNING,
-              "%sTick at t = %.9g s skipped, the estimate is kept: the regression overflows at "
-              "theta = %g, q = %g, tau = %g.",
-              who, t, z->theta, z->q, z->tau);
+    sh_report(
+        log, SH_WARNING,
+        "%sTick at t = %.9g s skipped, the estimate is kept: %s theta = %g, q = %g, tau = %g.", who,
+        t,
+        doubt == SH_DOUBT_OUTLIER ? "after the samples before, no joint can give"
+                                  : "the regression overflows at",
+        z->theta, z->q, z->tau);
 }
 
 /* The largest allowed deformation is slow to compute but never below range.phi, so range.phi is tested first. */
@@ -104,7 +108,7 @@ static sh_status tick(sh_estimator_fmu *fmu, double t, double after, const char 
     if (sh_estimator_tick(&fmu->estimator, p, &z, &fmu->output)) {
         status = SH_WARNING;
         if (was_valid) {
-            log_skipped(&z, t + after, who, log);
+            log_skipped(&z, fmu->output.doubt, t + after, who, log);
         }
     } else if (!was_valid) {
         sh_report(log, SH_OK, "%sMeasurements are good again at t = %.9g s, %g ticks skipped.", who,

@@ -8,7 +8,7 @@
 #include <stdint.h>
 
 /* Raise the version if a model's struct changes: the GUID may not change. */
-enum { SH_STATE_VERSION = 25 };
+enum { SH_STATE_VERSION = 26 };
 
 /* Checksum of a block of bytes, as if the checksum in the block, at the place `hole` [bytes], were 0. FNV-1a, 64 bit:
  * datatracker.ietf.org/doc/html/draft-eastlake-fnv

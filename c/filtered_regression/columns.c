@@ -1,16 +1,16 @@
 /* The columns of the regression, and the row of a sample.
  *
  * The equation of motion is the equation (3) of the motor with Coulomb friction. The motor data B and D_theta
- * have the relative errors b and d, and tau_e > 0 for phi > 0:
+ * have the relative errors b and d, and tau_e > 0 for phi > 0 (F1):
  *
  *     gamma^2 B (1 + b) theta'' + gamma^2 D_theta (1 + d) theta' + |gamma| sign(theta') tau_C
  *         = gamma tau + tau_e(q - theta) .
  *
- * With all signals through the filter H (index f), and tau_e = F' eta of (21), the equation of motion is the regression
+ * With all signals through the filter H (index f), and tau_e = F' eta of (21), the equation of motion is the regression (F3)
  *
  *     y = gamma (B gamma theta''_f + D_theta gamma theta'_f - tau_f)
  *       = F_f' eta - gamma^2 D_theta theta'_f d - gamma^2 B theta''_f b
- *         - |gamma| sign(theta')_f tau_C + further columns (point 6) ,
+ *         - |gamma| sign(theta')_f tau_C + further columns (section 1) ,
  *
  * each multiplied by the std deviation of its coefficient, so that all coefficients have the prior N(0, 1). If the
  * torque of the spring is measured or modelled, y is the torque of the spring, and the columns of the motor are 0.
@@ -79,8 +79,8 @@ enum { ONE, TAU_E, K_0, TAU_C, IF_DRY, IF_CURVE };
 /* A column before DAMPING is the output of a filter with the input signal_of. Other columns are computed in entry_of.
  */
 const sh_column_kind sh_column_kinds[SH_COLUMN_KINDS] = {
-    [SH_COLUMN_POWER] = {PRIOR(tau_e), ONE, 0, POWER | SH_IS_EQUATION},
-    [SH_COLUMN_NOMINAL] = {PRIOR(nominal), IF_CURVE, 0, SH_IS_CURVE | SH_IS_EQUATION},
+    [SH_COLUMN_POWER] = {PRIOR(tau_e), ONE, 0, POWER},
+    [SH_COLUMN_NOMINAL] = {PRIOR(nominal), IF_CURVE, 0, SH_IS_CURVE},
     [SH_COLUMN_HIGHER_POWER] = {PRIOR(power), TAU_E, 1, POWER},
     [SH_COLUMN_SET_POWER] = {PRIOR(power), TAU_E, 2, POWER},
     [SH_COLUMN_DEAD_ZONE] = {PRIOR(gap), TAU_E, 6, 0},
@@ -97,9 +97,9 @@ const sh_column_kind sh_column_kinds[SH_COLUMN_KINDS] = {
     [SH_COLUMN_COS_M] = {PRIOR(eccentric_motor), ONE, 5, 0},
     [SH_COLUMN_LOAD] = {PRIOR(load_friction), ONE, 0, 0},
     [SH_COLUMN_DRIVE] = {PRIOR(load_friction), IF_DRY, 0, 0},
-    [SH_COLUMN_VISCOUS] = {PRIOR(D_theta), ONE, 0, SH_IS_EQUATION},
-    [SH_COLUMN_COULOMB] = {PRIOR(tau_coulomb), ONE, 0, SH_IS_EQUATION},
-    [SH_COLUMN_INERTIA] = {PRIOR(B), ONE, 0, SH_IS_EQUATION},
+    [SH_COLUMN_VISCOUS] = {PRIOR(D_theta), ONE, 0, 0},
+    [SH_COLUMN_COULOMB] = {PRIOR(tau_coulomb), ONE, 0, 0},
+    [SH_COLUMN_INERTIA] = {PRIOR(B), ONE, 0, 0},
 };
 
 /* Returns the half width of a dead zone or hysteresis, or the deformation at a knee, divided by range.phi [1]; else 0.
@@ -315,7 +315,7 @@ static sh_real signal_of(const sh_column *column, const sh_parameters *p, const 
     switch (column->kind) {
     case SH_COLUMN_POWER:
     case SH_COLUMN_HIGHER_POWER:
-    case SH_COLUMN_SET_POWER: /* l^j x^e / e, detail 1 */
+    case SH_COLUMN_SET_POWER: /* l^j x^e / e, (F4) */
         *slope = at->slope[i] * at->l[j];
         return at->power[i] * at->l[j];
     case SH_COLUMN_NOMINAL:
@@ -467,7 +467,7 @@ void sh_columns_move_stops(sh_real *stop, const sh_parameters *p, sh_real change
 
 /* ---- the row ----------------------------------------------------------------------------- */
 
-/* Returns H x + T^2/12 s^2 H x for a signal x that is not smooth (detail 2). */
+/* Returns H x + T^2/12 s^2 H x for a signal x that is not smooth (F5). */
 static sh_real as_if_smooth(const sh_parameters *p, const sh_filtered *f, int i)
 {
     return f->output[i] + p->samplePeriod * p->samplePeriod / 12 * f->second[i];
@@ -494,7 +494,7 @@ sh_real sh_columns_y(const sh_parameters *p, const sh_filtered *f)
 }
 
 /* Returns sigma S + gamma^2 (D_theta S' + B S''), the error of y by the encoder error S of theta, which is signal i.
- * Returns 0 while sigma is not known (detail 13).
+ * Returns 0 while sigma is not known (section 1).
  */
 static sh_real encoder_error(const sh_filtered *f, const sh_feedback *feedback,
                              const sh_parameters *p, int i)
@@ -557,7 +557,7 @@ void sh_columns_row(const sh_columns *columns, const sh_mean *mean, const sh_fee
     x[size + SH_RIGHT_Y] = sh_columns_y(p, f) - f->output[SH_FILTER_NOMINAL];
 }
 
-/* nu = lambda epsilon / (1 - lambda c s'), s' = slope: estimated noise of the torque. The function removes this noise
+/* (F14): nu = lambda epsilon / (1 - lambda c s'), s' = slope: estimated noise of the torque. The function removes this noise
  * from the column, and thus from the prediction. The remaining noise has the variance (1 - lambda) N_tau. This number
  * is also the covariance of the remaining noise and the torque in y.
  */

@@ -1,4 +1,4 @@
-/* Method FilteredRegression: one tick, and the outputs of its estimate. */
+/* Method FilteredRegression: the tick. */
 #include "information.h"
 #include "method.h"
 #include "pair.h"
@@ -10,35 +10,8 @@
 #define SH_KNOWN_STIFFNESS ((sh_real)0.2)
 /* Largest delay that the column of the delay corrects, in std deviations of the delay's prior [1]. */
 #define SH_LARGEST_DELAY ((sh_real)3)
-/* Error of phi from encoder harmonics and gear, divided by the once-per-turn error of the link encoder [1]. With 0.025,
- * the estimate of a stiff joint with a free inertia is confident and wrong.
- */
-#define SH_HARMONICS ((sh_real)0.035)
-/* Largest change of the stiffness by these position errors, in std deviations of the stiffness [1]. */
-#define SH_LARGEST_PULL ((sh_real)2)
 /* Variance of the squared noise divided by the square of the mean of the squared noise [1]: the noise is correlated. */
 #define SH_SPREAD_OF_SQUARE ((sh_real)6)
-/* Squared misfit above which the estimate is in doubt, and number of blocks below which this limit holds [1]. With more
- * blocks, most columns that may explain the misfit have been tried, and the variance factor is sufficient.
- */
-#define SH_UNEXPLAINED ((sh_real)2.25)
-#define SH_UNTRIED_BLOCKS ((sh_real)35)
-/* With N blocks, the variance is multiplied by 1 + SH_UNJUDGED_BLOCKS / N [1]. In the first half second, joints with
- * several misfits are then wrong for 1.4 % (without the factor, 4.6 %) of the confident time.
- */
-#define SH_UNJUDGED_BLOCKS ((sh_real)10)
-/* Limits of x^e and of x for x = |phi| / range.phi and the highest exponent e [1]. Beyond both limits, the estimate is
- * not confident.
- */
-#define SH_LARGEST_POWER ((sh_real)32)
-#define SH_LEAST_LIMIT ((sh_real)2)
-/* Deviation of a motor parameter above which the estimate is in doubt, in std deviations of the prior [1]. */
-#define SH_OUTSIDE_PRIOR ((sh_real)3)
-/* Distance of viscous friction below 0 from which the estimate is in doubt, in std deviations [1]. Such a friction
- * shows that the encoders are read at different times. Of 40 simulated logs, only the eight with a late encoder had
- * such a friction.
- */
-#define SH_BELOW_ZERO ((sh_real)1)
 
 static int check_filtered_regression(const sh_parameters *p, sh_violation *violation)
 {
@@ -60,14 +33,6 @@ static int check_filtered_regression(const sh_parameters *p, sh_violation *viola
     return 0;
 }
 
-/* Returns the |phi| at which the highest power is 32 times its value at range.phi, but at least twice range.phi. */
-static sh_real largest_deformation_filtered_regression(const sh_parameters *p)
-{
-    const int e = sh_power_of_phi(p->rls.symmetric, p->rls.n - 1);
-
-    return p->range.phi * sh_fmax(SH_LEAST_LIMIT, sh_exp(sh_log(SH_LARGEST_POWER) / (sh_real)e));
-}
-
 /* ---- torque and stiffness at a point ------------------------------------------------------ */
 
 static sh_variances variances_at(const sh_regression_state *state, const sh_parameters *p,
@@ -77,54 +42,20 @@ static sh_variances variances_at(const sh_regression_state *state, const sh_para
                                   state->columns.spring);
 }
 
-/* Returns the variance of torque or stiffness by errors of phi, which make the value too small by the share v sum
- * V_phi/R (point 5). Errors that repeat with the position change the value by at most two std deviations. A larger
- * change would also move coefficients of the motor far from their priors.
- *
- * value     times v sum 1/R
- * variance  of the value
- */
-static sh_real of_errors(const sh_regression_state *state, const sh_parameters *p, sh_real value,
-                         sh_real variance)
-{
-    const sh_real harmonics = sh_square(SH_HARMONICS * p->prior.eccentric);
-
-    return sh_square(sh_noise_of_deformation(&state->signals) * value) +
-           sh_fmin(sh_square(harmonics * value), sh_square(SH_LARGEST_PULL) * variance);
-}
-
-/* tau_e = F' beta, (21), and sigma = dF' beta, (23), with the curve rls.eta_0. Both variances are the sum of c' P c,
- * (s_g d(c' beta)/dg)^2 for the gain g of the torque (point 8), and a term for errors of phi (point 5). The variance of
- * sigma also contains the uncertainty of the slope near a knee [(N.m/rad)2] (point 6). As an approximation, the share
- * by which errors of phi change sigma is also used for the torque. Returns d sigma / dg, which may overflow.
+/* Evaluates torque and stiffness, where knees make the slope uncertain by a variance [(N.m/rad)2]. Returns
+ * d sigma / dg, which may overflow.
  */
 static sh_real evaluate_at(const sh_regression_state *state, const sh_parameters *p,
                            const sh_joint_point *at, const sh_variances *variances, sh_real knees,
                            sh_point *point)
 {
-    /* v sum 1/R: times V_phi, the share by which sigma is too small */
-    const sh_real attenuation =
-        state->samples.weights * state->posterior.weight * variances->second;
-    const sh_real gain = p->prior.torque_gain;
-    const int count = state->columns.spring;
-    sh_real torque, torque_per_gain, stiffness, stiffness_per_gain;
+    sh_phi_errors errors;
 
-    sh_scalar_products(at->F, state->beta, state->per_gain, count, &torque, &torque_per_gain);
-    sh_scalar_products(at->dF, state->beta, state->per_gain, count, &stiffness,
-                       &stiffness_per_gain);
-    point->tau_e = at->tau_nominal + torque;
-    point->sigma = at->sigma_nominal + stiffness;
-    point->tau_e_std =
-        sh_std_deviation(variances->first + sh_square(gain * torque_per_gain) +
-                         of_errors(state, p, attenuation * point->tau_e, variances->first));
-    point->sigma_std = sh_std_deviation(
-        variances->second + sh_square(gain * stiffness_per_gain) +
-        of_errors(state, p, attenuation * point->sigma, variances->second) + knees);
-    point->sigma_per_gain =
-        sh_fabs(point->sigma) > 0
-            ? sh_limited(stiffness_per_gain / sh_fabs(point->sigma), SH_LARGEST_OUTPUT)
-            : 0;
-    return stiffness_per_gain;
+    errors.weights = state->samples.weights * state->posterior.weight;
+    errors.rounding = sh_noise_of_deformation(&state->signals);
+    errors.knees = knees;
+    return sh_point_evaluate(point, &state->coefficients, p, at, state->columns.spring, variances,
+                             &errors);
 }
 
 /* Evaluates torque and stiffness at a constant deformation, without hysteresis. */
@@ -136,7 +67,7 @@ static void evaluate_at_rest(const sh_regression_state *state, const sh_paramete
     sh_real knees;
 
     sh_joint_point_at(at, &state->columns, p, 0, 0, phi, set_point, at_rest);
-    knees = sh_columns_judge_knees(&state->columns, p, state->beta, at);
+    knees = sh_columns_judge_knees(&state->columns, p, state->coefficients.beta, at);
     variances = variances_at(state, p, at);
     (void)evaluate_at(state, p, at, &variances, knees, point);
 }
@@ -151,113 +82,6 @@ static void evaluate_filtered_regression(const sh_estimator *estimator, const sh
 
 /* ---- report ------------------------------------------------------------------------------- */
 
-/* Converts the coefficients of powers of s - c to coefficients of powers of the set-point s, by Horner's scheme. */
-static void shift_set_point(sh_estimate *estimate, sh_real c)
-{
-    int i, j, k;
-
-    for (i = 0; i < SH_MAX_N; ++i) {
-        for (k = 0; k < SH_MAX_M - 1; ++k) {
-            for (j = SH_MAX_M - 2; j >= k; --j) {
-                const sh_real shifted = estimate->eta[i][j] - c * estimate->eta[i][j + 1];
-
-                estimate->eta[i][j] = sh_limited(shifted, SH_LARGEST_OUTPUT);
-            }
-        }
-    }
-}
-
-/* Sets the coefficients eta, and adds up the coefficients of each kind of column in sum [size: SH_COLUMN_KINDS]. */
-static void read_coefficients(const sh_regression_state *state, const sh_parameters *p,
-                              const sh_joint_point *at, sh_real *sum, sh_estimate *estimate)
-{
-    int i, j;
-
-    for (i = 0; i < state->columns.size; ++i) {
-        const sh_column *column = &state->columns.column[i];
-        sh_real value = column->prior * state->beta[i];
-
-        if (sh_column_is(column, SH_IS_POWER)) {
-            estimate->eta[column->i][column->j] =
-                sh_limited(value * column->unit, SH_LARGEST_OUTPUT);
-        } else if (column->kind == SH_COLUMN_DAMPING) {
-            value *= sh_limited(at->l[column->j], SH_LARGE);
-        }
-        sum[column->kind] += value;
-    }
-    if (sh_fabs(p->range.setPoint_center) > 0 && p->prior.tau_e > 0) {
-        shift_set_point(estimate, p->range.setPoint_center);
-    }
-    for (i = 0; i < p->rls.n && state->columns.has_nominal; ++i) {
-        for (j = 0; j < p->rls.m; ++j) {
-            estimate->eta[i][j] = (p->prior.tau_e > 0 ? estimate->eta[i][j] : 0) +
-                                  (1 + sum[SH_COLUMN_NOMINAL]) * p->rls.eta_0[i][j];
-        }
-    }
-}
-
-/* Returns the reason why the estimate is not confident. The misfit increases sigma_std. For few blocks, the misfit also
- * has a limit of its own, because some columns that may explain the misfit have not been tried. With N blocks, c' P c
- * is multiplied by 1 + 10/N, because few blocks hardly show whether the model holds.
- */
-static int doubt_of(const sh_regression_state *state, const sh_parameters *p,
-                    const sh_estimate *estimate)
-{
-    const sh_real phi = sh_fabs(estimate->phi), N = sh_fmax(state->bank.count, 1);
-    const sh_real unjudged =
-        p->regression.memory > 0 ? state->variances.second * SH_UNJUDGED_BLOCKS / N : 0;
-    int doubt = SH_DOUBT_NONE;
-
-    if (!(sh_square(estimate->sigma_std) + unjudged <
-          sh_square(p->limit.relative_std * estimate->sigma))) {
-        doubt = state->misfit.variance_factor > SH_CONTRADICTION ? SH_DOUBT_MISFIT
-                                                                 : SH_DOUBT_NOT_EXCITED;
-    }
-    if (p->regression.memory > 0 && state->bank.count < SH_UNTRIED_BLOCKS &&
-        state->misfit.square > SH_UNEXPLAINED) {
-        doubt = SH_DOUBT_MISFIT;
-    }
-    if (phi > SH_LEAST_LIMIT * p->range.phi && phi > largest_deformation_filtered_regression(p)) {
-        doubt = SH_DOUBT_OUT_OF_RANGE;
-    }
-    if (sh_fabs(state->viscous) > SH_OUTSIDE_PRIOR * p->prior.D_theta ||
-        1 + state->viscous < -SH_BELOW_ZERO * state->friction_std) {
-        doubt = SH_DOUBT_FRICTION;
-    }
-    if (sh_fabs(state->inertia) > SH_OUTSIDE_PRIOR * p->prior.B) {
-        doubt = SH_DOUBT_INERTIA;
-    }
-    if (estimate->sigma < 0) {
-        doubt = SH_DOUBT_NEGATIVE_STIFFNESS;
-    }
-    if (sh_bank_doubts(&state->bank) || sh_misfit_is_sudden(&state->misfit)) {
-        doubt = SH_DOUBT_CHANGE;
-    }
-    return doubt;
-}
-
-/* Sets the outputs that are computed from the coefficients and from the stiffness in estimate. */
-static void report_coefficients(sh_regression_state *state, const sh_parameters *p,
-                                const sh_joint_point *at, sh_estimate *estimate)
-{
-    sh_real sum[SH_COLUMN_KINDS] = {0}, turning;
-
-    read_coefficients(state, p, at, sum, estimate);
-    turning = sh_sqrt(sh_square(sum[SH_COLUMN_SIN_Q]) + sh_square(sum[SH_COLUMN_COS_Q]));
-    state->viscous = sum[SH_COLUMN_VISCOUS];
-    state->inertia = sum[SH_COLUMN_INERTIA];
-    estimate->D_theta_hat = p->motor.D_theta * (1 + state->viscous);
-    estimate->B_hat = p->motor.B * (1 + state->inertia);
-    estimate->tau_coulomb_hat = sum[SH_COLUMN_COULOMB];
-    estimate->bias_hat = sum[SH_COLUMN_BIAS];
-    estimate->damping_hat = sum[SH_COLUMN_DAMPING];
-    estimate->load_friction_hat = sum[SH_COLUMN_LOAD] + sum[SH_COLUMN_DRIVE];
-    estimate->eccentric_hat =
-        turning > 0 ? turning / sh_fmax(sh_fabs(estimate->sigma), turning) : 0; /* at most 1 rad */
-    estimate->delay_hat = sum[SH_COLUMN_DELAY];
-    estimate->hysteresis_hat = sum[SH_COLUMN_HYSTERESIS];
-}
-
 /* Returns what the next row needs of the estimate, whose y is y [N.m]. */
 static sh_feedback feedback_of(const sh_estimate *estimate, const sh_parameters *p, sh_real y,
                                sh_real variance_of_sigma)
@@ -271,8 +95,15 @@ static sh_feedback feedback_of(const sh_estimate *estimate, const sh_parameters 
     return feedback;
 }
 
+static int doubt_of(const sh_regression_state *state, const sh_parameters *p,
+                    const sh_estimate *estimate)
+{
+    return sh_report_doubt(estimate, &state->coefficients, state->variances.second, &state->bank,
+                           &state->misfit, p);
+}
+
 /* Sets all outputs. If a number overflows, returns 0 and sets no output. The variances at a point take as much time as
- * a row, so they are computed once for a row (detail 16).
+ * a row, so they are computed once for a row (section 15).
  *
  * settled  whether the filters have settled
  * news     SH_NEW_*
@@ -280,7 +111,7 @@ static sh_feedback feedback_of(const sh_estimate *estimate, const sh_parameters 
 static int report(sh_regression_state *state, const sh_parameters *p, sh_joint_point *at, sh_real y,
                   int settled, int news, sh_estimate *estimate)
 {
-    const sh_real knees = sh_columns_judge_knees(&state->columns, p, state->beta, at);
+    const sh_real knees = sh_columns_judge_knees(&state->columns, p, state->coefficients.beta, at);
     sh_point point;
     sh_real per_gain;
 
@@ -303,13 +134,30 @@ static int report(sh_regression_state *state, const sh_parameters *p, sh_joint_p
     estimate->a = settled ? 1 : 0;
     estimate->rho = state->row.rho;
     estimate->epsilon = state->row.epsilon;
-    estimate->change_age = state->change_age;
+    estimate->change_age =
+        state->change_age < 0 ? -1 : (sh_real)state->change_age * p->samplePeriod;
     estimate->misfit = sh_sqrt(state->misfit.square);
     if ((news & SH_NEW_COEFFICIENTS) != 0) {
-        report_coefficients(state, p, at, estimate);
+        sh_report_coefficients(&state->columns, &state->coefficients, p, at, estimate);
     }
     estimate->doubt = doubt_of(state, p, estimate);
     return 1;
+}
+
+/* Starts all that a row changes. */
+static void start_learning(sh_regression_state *state, const sh_parameters *p)
+{
+    const sh_feedback nothing = {0, 0, 0, 0};
+
+    sh_row_start(&state->row, &state->mean);
+    sh_samples_start(&state->samples, state->columns.size);
+    sh_block_empty(&state->block);
+    sh_bank_start(&state->bank, state->columns.size);
+    sh_misfit_start(&state->misfit);
+    sh_coefficients_start(&state->coefficients, p);
+    sh_schedule_start(state, p);
+    state->feedback = nothing;
+    state->change_age = -1;
 }
 
 /* Starts the state, and sets the uncertainty of the start estimate, which is the curve rls.eta_0, at phi = 0. */
@@ -322,18 +170,16 @@ static void start_filtered_regression(sh_estimator *estimator, const sh_paramete
 
     state->modality = p->modality;
     sh_columns_start(&state->columns, p);
+    sh_gate_start(&state->gate, &state->columns, p);
     sh_signals_start(&state->signals, p);
-    sh_samples_start(&state->samples, state->columns.size);
+    sh_rest_start(&state->rest, &state->signals.design);
     sh_block_start(&state->block, &state->signals);
-    sh_bank_start(&state->bank, state->columns.size);
-    sh_misfit_start(&state->misfit, state->columns.size);
-    sh_schedule_start(state, p);
-    state->change_age = -1;
+    start_learning(state, p);
     evaluate_at_rest(state, p, 0, p->setPoint.offset, &at, &point);
     state->variances = variances_at(state, p, &at);
     estimate->sigma_std = point.sigma_std;
     estimate->tau_e_std = point.tau_e_std;
-    report_coefficients(state, p, &at, estimate);
+    sh_report_coefficients(&state->columns, &state->coefficients, p, &at, estimate);
     estimate->misfit = sh_sqrt(state->misfit.square);
     estimate->doubt = doubt_of(state, p, estimate);
 }
@@ -350,7 +196,24 @@ static int are_acceptable(const sh_joint_point *at, sh_real y, const sh_columns 
            sh_square(y) <= SH_LARGE;
 }
 
-/* Adds a sample to the mean of the present row. Returns 1 if the row is complete (detail 16). */
+/* (F30): returns 1 if a joint can give the sample. Otherwise, the estimate is in doubt. */
+static int passes_gate(sh_estimator *estimator, const sh_parameters *p, const sh_measurement *z,
+                       sh_real set_point, sh_estimate *estimate)
+{
+    sh_regression_state *state = &estimator->method.regression;
+
+    if (state->modality != p->modality) { /* the torque is another quantity */
+        sh_gate_start(&state->gate, &state->columns, p);
+    }
+    if (!sh_gate_take(&state->gate, p, z, set_point, estimator->skipped)) {
+        estimate->doubt = SH_DOUBT_OUTLIER;
+        estimate->confident = 0;
+        return 0;
+    }
+    return 1;
+}
+
+/* Adds a sample to the mean of the present row. Returns 1 if the row is complete (section 4). */
 static int take_sample(sh_regression_state *state, const sh_parameters *p, const sh_filtered *now)
 {
     const sh_real rough = sh_signals_watch_theta(&state->signals, p);
@@ -363,7 +226,7 @@ static int take_sample(sh_regression_state *state, const sh_parameters *p, const
     return complete;
 }
 
-/* Updates the sums of noise in the columns of b (detail 7), the torque (detail 14) and the spring (point 5). */
+/* Updates the sums of noise in the columns of b (F12), the torque (F15) and the spring (F25). */
 static void update_noise(sh_regression_state *state, const sh_parameters *p,
                          const sh_column_noise *left, sh_real w)
 {
@@ -395,7 +258,8 @@ static int use_row(sh_regression_state *state, const sh_parameters *p, const sh_
     if (!sh_row_weigh(row, noise, size)) { /* 3. Weigh it. */
         return 0;
     }
-    sh_row_predict(row, &state->columns, state->beta, noise, &left); /* 4. Predict and compare. */
+    sh_row_predict(row, &state->columns, state->coefficients.beta, noise,
+                   &left); /* 4. Predict and compare. */
     share = sh_posterior_take(&state->posterior, row->x, size, row->w); /* 5. Update. */
     sh_row_compare(row, share);
     update_noise(state, p, &left, row->w);
@@ -403,17 +267,18 @@ static int use_row(sh_regression_state *state, const sh_parameters *p, const sh_
     return 1;
 }
 
-/* Waits until the filters have settled. An incomplete block is dropped, because a block must not contain a gap. */
+/* Waits until the filters have settled. The rows before the gap belong to no block, because a block must not contain a
+ * gap.
+ */
 static void wait_until_settled(sh_regression_state *state)
 {
     sh_signals_unsettle(&state->signals);
-    if (!sh_block_is_full(&state->block)) { /* else it will be taken and emptied */
-        sh_block_empty(&state->block);
-    }
+    sh_block_empty(&state->block);
+    sh_schedule_interrupt(&state->schedule);
 }
 
 /* Resets the quantities that made the last row too large, so that the next row is acceptable. Returns 0. */
-static int refuse(sh_regression_state *state, const sh_history *before, sh_real age)
+static int refuse(sh_regression_state *state, const sh_history *before, int age)
 {
     const sh_feedback nothing = {0, 0, 0, 0};
 
@@ -426,24 +291,56 @@ static int refuse(sh_regression_state *state, const sh_history *before, sh_real 
 
 static sh_row_noise noise_of_row(const sh_regression_state *state, const sh_parameters *p)
 {
-    const sh_real friction =
-        sh_noise_of_friction(&state->signals, &state->columns, &state->posterior, state->beta, p);
+    const sh_real friction = sh_noise_of_friction(&state->signals, &state->columns,
+                                                  &state->posterior, state->coefficients.beta, p);
 
     return sh_noise_of_row(&state->signals, &state->feedback, friction, p);
 }
 
-/* Detail 12: returns 1 if the newest row shows that the motor was not at rest at the start. */
-static int contradicts_rest(sh_regression_state *state, const sh_parameters *p,
-                            const sh_row_noise *noise)
+/* Section 13: a motor that moved at the first sample makes all rows of the start wrong, and so does a gap before the
+ * positions have shown that it was at rest. What was learned is then dropped. Returns SH_NEW_*.
+ */
+static int learn_anew(sh_regression_state *state, const sh_parameters *p)
 {
-    sh_signals *signals = &state->signals;
+    sh_rest_end(&state->rest);
+    start_learning(state, p);
+    wait_until_settled(state);
+    return SH_NEW_COEFFICIENTS;
+}
 
-    if (sh_is_measured(p) || !(signals->history.starting > 0)) {
+/* Starts the filters anew after a gap. Returns SH_NEW_*. */
+static int begin_anew(sh_regression_state *state, const sh_parameters *p)
+{
+    sh_signals_begin_anew(&state->signals);
+    if (sh_rest_is_open(&state->rest)) {
+        return learn_anew(state, p);
+    }
+    wait_until_settled(state);
+    return 0;
+}
+
+/* Tests whether the motor was at rest at the first sample. A measured torque needs no such assumption. Returns SH_NEW_*.
+ */
+static int test_rest(sh_regression_state *state, const sh_parameters *p, sh_real theta)
+{
+    const sh_signals *signals = &state->signals;
+
+    if (sh_is_measured(p)) {
+        sh_rest_end(&state->rest);
         return 0;
     }
-    sh_signals_pass_start(signals, (sh_real)signals->decimation * p->samplePeriod);
-    return sh_noise_contradicts_rest(signals, &state->columns, &state->posterior, state->beta,
-                                     state->row.x, noise, p);
+    return sh_rest_take(&state->rest, theta, signals->count, signals->history.rough)
+               ? learn_anew(state, p)
+               : 0;
+}
+
+/* Returns the age of a change, -1 for none, after a number of ticks. A sum of times would not grow any more in float. */
+static int older(int age, int ticks)
+{
+    if (age < 0) {
+        return age;
+    }
+    return age < SH_MOST_TICKS - ticks ? age + ticks : SH_MOST_TICKS;
 }
 
 static int tick_filtered_regression(sh_estimator *estimator, const sh_parameters *p,
@@ -452,41 +349,39 @@ static int tick_filtered_regression(sh_estimator *estimator, const sh_parameters
 {
     sh_regression_state *state = &estimator->method.regression;
     const sh_history before = state->signals.history;
-    const sh_real age = state->change_age;
-    int settled, complete, news;
+    const int age = state->change_age;
+    int settled, complete, news = 0;
     sh_joint_point at;
     sh_real y;
 
+    if (!passes_gate(estimator, p, z, set_point, estimate)) {
+        return 0;
+    }
     if (estimator->started && (estimator->skipped > 0 || state->modality != p->modality)) {
-        sh_signals_begin_anew(&state->signals);
-        wait_until_settled(state);
+        news |= begin_anew(state, p);
     }
-    if (state->change_age >= 0) {
-        state->change_age += (1 + estimator->skipped) * p->samplePeriod;
-    }
+    state->change_age = older(state->change_age, 1 + estimator->skipped);
     /* 1. Filter the signals. */
-    if (sh_signals_take(&state->signals, &state->columns, state->beta, &state->feedback, p, z,
-                        set_point, &at)) {
+    if (sh_signals_take(&state->signals, &state->columns, state->coefficients.beta,
+                        &state->feedback, p, z, set_point, &at)) {
         sh_mean_empty(&state->mean);
     }
     y = sh_columns_y(p, &at.filtered);
     if (!are_acceptable(&at, y, &state->columns)) {
         return refuse(state, &before, age);
     }
+    news |= test_rest(state, p, z->theta);
     settled = sh_signals_settle(&state->signals, p->samplePeriod);
     complete = settled && take_sample(state, p, &at.filtered); /* 2. Build a row of K samples. */
     if (complete) {
         const sh_row_noise noise = noise_of_row(state, p);
 
-        if (contradicts_rest(state, p, &noise)) {
-            wait_until_settled(state);
-            settled = 0;
-        } else if (!use_row(state, p, &noise)) { /* 3. to 5. Weigh it, predict it, and update. */
+        if (!use_row(state, p, &noise)) { /* 3. to 5. Weigh it, predict it, and update. */
             return refuse(state, &before, age);
         }
     }
-    /* The variances are computed at each tick until the first row is complete, also after a gap. */
-    news = complete || (settled && state->row.w > 0) ? 0 : SH_NEW_VARIANCES;
+    /* The variances are computed at each tick before the first row, and after a gap until the filters have settled. */
+    news |= complete || (settled && state->row.w > 0) ? 0 : SH_NEW_VARIANCES;
     if (!complete || state->signals.decimation == 1) {
         news |= sh_schedule_advance(state, p); /* 6. Estimate, data, misfit, choice of columns. */
     }
@@ -502,7 +397,7 @@ static int tick_filtered_regression(sh_estimator *estimator, const sh_parameters
 }
 
 const sh_method sh_filtered_regression = {
-    .largest_deformation = largest_deformation_filtered_regression,
+    .largest_deformation = sh_largest_deformation,
     .check = check_filtered_regression,
     .start = start_filtered_regression,
     .tick = tick_filtered_regression,

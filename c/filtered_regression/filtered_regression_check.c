@@ -68,6 +68,8 @@ static int are_numbers(const sh_regression_state *state)
         {&state->modality, SH_MODALITY_RESIDUAL, SH_MODALITY_MODEL},
         {&bank->friction_drifts, 0, 1},
         {&state->feedback.stiffness_known, 0, 1},
+        {&state->gate.samples, 0, SH_MOST_TICKS},
+        {&state->gate.skipped, 0, SH_MOST_TICKS},
         {&state->signals.begun, 0, 1},
         {&state->signals.decimation, 1, SH_LARGEST_DECIMATION},
         {&state->mean.samples, 0, SH_LARGEST_DECIMATION},
@@ -77,22 +79,33 @@ static int are_numbers(const sh_regression_state *state)
         {&refit->posterior.information.size, 1, size},
         {&refit->unread, 0, size},
         {&refit->is_open, 0, 1},
-        {&state->schedule.job, 0, SH_REFIT_JOBS},
+        {&state->schedule.block_job, 0, SH_BLOCK_JOBS},
+        {&state->schedule.refit_job, 0, SH_REFIT_JOBS},
+        {&state->schedule.interrupted, 0, 1},
         {&refit->trial, 0, SH_GROUPS - 1},
         {&refit->last_trial, 0, SH_GROUPS - 1},
         {&bank->constant.size, size, size},
         {&bank->friction.size, size, size},
-        {&state->misfit.recent.size, size, size},
         {&bank->spring.size, size, size},
         {&bank->following, 0, 1},
         {&bank->widened, 0, SH_MAX_COLUMNS},
+        {&state->rest.taken, 0, SH_LONGEST_REST + 1},
+        {&state->rest.most, 1, SH_LONGEST_REST},
+        {&state->rest.next, 2, 2 * SH_LONGEST_REST},
+        {&state->change_age, -1, SH_MOST_TICKS},
     };
     const int count = sizeof ranges / sizeof ranges[0];
     int i;
 
-    /*@ loop unroll 21; */
+    /*@ loop unroll 28; */
     for (i = 0; i < count; ++i) {
         if (*ranges[i].number < ranges[i].least || *ranges[i].number > ranges[i].most) {
+            return 0;
+        }
+    }
+    /*@ loop unroll SH_GATE_SIGNALS; */
+    for (i = 0; i < SH_GATE_SIGNALS; ++i) {
+        if (state->gate.signal[i].refused < 0 || state->gate.signal[i].refused > SH_MOST_TICKS) {
             return 0;
         }
     }

@@ -76,6 +76,11 @@ void sh_information_restart(sh_information *a, int count, sh_real precision)
     }
 }
 
+void sh_information_widen(sh_information *a, int row, sh_real variance)
+{
+    a->D[row] /= 1 + a->D[row] * variance;
+}
+
 /* Error variance v of a sample that some rows have reduced, and 1 / v, so that each row waits for only one addition. */
 typedef struct {
     sh_real variance, weight;

@@ -1,4 +1,4 @@
-/* Least squares in the information form, without square roots (detail 5). For samples y = x' beta of weight w, the sum
+/* Least squares in the information form, without square roots (F16). For samples y = x' beta of weight w, the sum
  * of w x x' is U' D U, with U unit upper triangular. The right-hand sides are U z. The update by a sample takes
  * O(size^2) operations, and no parameter needs a prior (Gentleman 1974, Algorithm AS 75, Applied Statistics 23:448-454;
  * Miller 1992, AS 274).
@@ -28,6 +28,13 @@ void sh_information_copy(sh_information *to, const sh_information *from);
  * count  number of first parameters, >= 0; all of them if it is larger than size
  */
 void sh_information_restart(sh_information *a, int count, sh_real precision);
+
+/* Adds a variance to one parameter, if the parameters before it are unknown.
+ *
+ * row       of the first parameter about which there is information
+ * variance  >= 0
+ */
+void sh_information_widen(sh_information *a, int row, sh_real variance);
 
 /* Takes a sample.
  *

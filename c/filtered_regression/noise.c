@@ -9,8 +9,6 @@
 #define SH_EXCESS ((sh_real)0.3)
 /* Share of the rounding variance count^2/12 that fourth differences do not show [1]: mean for 1 to 100 counts. */
 #define SH_ROUNDING_IS_NOT_WHITE ((sh_real)0.056)
-/* Number of std deviations above which the first rows contradict the assumption that the motor is at rest [1]. */
-#define SH_AT_REST ((sh_real)5)
 
 /* Returns the sum of the squared counts of both encoders [rad2], which is 12 times the rounding variance of phi. */
 static sh_real counts_squared(const sh_signals *signals)
@@ -42,22 +40,26 @@ sh_real sh_noise_of_friction(const sh_signals *signals, const sh_columns *column
     return sh_square(p->motor.gamma * p->prior.tau_coulomb * u_f) * square;
 }
 
-/* K R = (sigma^2 (count^2 + count_q^2)/12 + (gamma s_tau)^2) (1 + 0.3 (X - 1))
+/* (F9), for one sample:
+ *
+ * R = (sigma^2 (count^2 + count_q^2)/12 + (gamma s_tau)^2) (1 + 0.3 (X - 1))
  *       + 16/(3 w T) gamma^2 (tau_C^2 + P_CC) u_f^2
  *
- * White noise counts as before the filter (point 1), as the mean of K samples. Behind the filter, a wrong sign of
+ * White noise counts as before the filter (section 5). Behind the filter, a wrong sign of
  * friction in one sample is the impulse response h, which changes many samples. The variance of friction is therefore
  * divided by T integral of h^2 = 3/16 w T.
  *
- * Errors that do not average out (point 5): R is the variance of the independent part of the error, and c is the
+ * Errors that do not average out (F11): R is the variance of the independent part of the error, and c is the
  * variance of the constant part. In this case, n samples have the information 1 / (R / n + c), so the n-th sample has
  * the variance
  *
- *     R (1 + c n / R)^2 .
+ *     R (1 + c n / R)^2 ,
  *
- * After the filter: N_tau = G_0 (gamma s_tau)^2 by the torque, N_theta by theta, with the noise of rounding at least,
+ * and a row of K samples a K-th of it.
+ *
+ * After the filter (F10): N_tau = G_0 (gamma s_tau)^2 by the torque, N_theta by theta, with the noise of rounding at least,
  * and N_C by friction of unknown sign. X is N_tau + N_theta divided by the value of this sum with rounding alone.
- * Jitter of the sample times increases X. lambda = N_tau / (N_tau + N_theta + N_C), detail 14.
+ * Jitter of the sample times increases X. lambda = N_tau / (N_tau + N_theta + N_C), (F14).
  */
 sh_row_noise sh_noise_of_row(const sh_signals *signals, const sh_feedback *feedback,
                              sh_real friction, const sh_parameters *p)
@@ -95,7 +97,7 @@ sh_real sh_noise_of_deformation(const sh_signals *signals)
     return signals->gain * counts_squared(signals) / 12;
 }
 
-/* N R = (gamma^2 B prior.B)^2 G V. V is the mean over samples of the squared fourth difference / 70. A sample in which
+/* (F12): N R = (gamma^2 B prior.B)^2 G V. V is the mean over samples of the squared fourth difference / 70. A sample in which
  * the position changes adds 0.056 (count^2 / 12) to the mean V.
  */
 sh_real sh_noise_of_inertia(const sh_signals *signals, const sh_row *row, const sh_parameters *p)
@@ -104,24 +106,4 @@ sh_real sh_noise_of_inertia(const sh_signals *signals, const sh_row *row, const 
         row->rough + SH_ROUNDING_IS_NOT_WHITE * row->moved * sh_square(signals->count) / 12;
 
     return sh_is_measured(p) ? 0 : sh_square(p->prior.B) * inertial_noise(signals, p) * V;
-}
-
-/* epsilon^2 > 25 (x' P x + N_tau + (gamma^2 B)^2 G count^2/12 + gamma^2 (tau_C^2 + P_CC) u_f^2). In this condition, x
- * contains only the columns of the equation of motion. Columns of other effects would hide a slow motion.
- */
-int sh_noise_contradicts_rest(const sh_signals *signals, const sh_columns *columns,
-                              const sh_posterior *posterior, const sh_real *beta, const sh_real *x,
-                              const sh_row_noise *noise, const sh_parameters *p)
-{
-    const int size = columns->size;
-    const sh_real epsilon = x[size + SH_RIGHT_Y] - sh_sum_of_products(x, beta, size);
-    sh_real c[SH_MAX_COLUMNS] = {0}, variance;
-    int i;
-
-    for (i = 0; i < size; ++i) {
-        c[i] = sh_column_is(&columns->column[i], SH_IS_EQUATION) ? x[i] : 0;
-    }
-    variance = sh_posterior_variances(posterior, p->prior.B, c, c, size).first + noise->torque +
-               inertial_noise(signals, p) * sh_square(signals->count) / 12 + noise->friction;
-    return sh_square(epsilon) > sh_square(SH_AT_REST) * variance;
 }

@@ -1,5 +1,5 @@
 /* Posterior of the coefficients, computed from the prior and from the data, which are weighted by the misfit. The noise
- * in columns is removed from the information (details 7 and 14).
+ * in columns is removed from the information (section 6).
  */
 #include <string.h>
 
@@ -46,7 +46,7 @@ void sh_posterior_count_noise(sh_posterior *posterior, sh_real N, sh_real Q)
 }
 
 /* D_b -= N removes the information N, which is noise. The right-hand side s = D_b z of y changes by s_y += N / prior.B,
- * because N is biased towards b = -1, which is beta = -1 / prior.B (detail 7).
+ * because N is biased towards b = -1, which is beta = -1 / prior.B (section 6.1).
  */
 void sh_posterior_remove(sh_posterior *posterior, sh_real prior_B)
 {
@@ -67,7 +67,7 @@ void sh_posterior_remove(sh_posterior *posterior, sh_real prior_B)
 }
 
 /* Returns the last row with the weight of the data about b after the removal of noise: D = 1 + I^2 / (I + N + Q), with
- * I = D_b - 1 and Q = spread + (0.05 N / prior.B)^2 (detail 7).
+ * I = D_b - 1 and Q = spread + (0.05 N / prior.B)^2 (F13).
  */
 static sh_last_row weighed_last(const sh_posterior *posterior, sh_real prior_B)
 {
@@ -86,7 +86,7 @@ static sh_last_row weighed_last(const sh_posterior *posterior, sh_real prior_B)
 }
 
 /* D = 1 + I + N is the information about the coefficient if all others are estimated, and N is the part by noise. A
- * sample of negative weight reduces the information of the data to I^2 / (I + N + Q), Q = (0.2 G)^2 (detail 14).
+ * sample of negative weight reduces the information of the data to I^2 / (I + N + Q), Q = (0.2 G)^2 (F15).
  */
 void sh_posterior_remove_noise(sh_posterior *posterior, sh_real prior_B, int i,
                                const sh_column_noise *noise)

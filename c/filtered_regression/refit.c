@@ -1,10 +1,12 @@
-/* Refits apply a new misfit, or a new choice of columns, to past samples in bounded time (detail 6). A refit computes a
+/* Refits apply a new misfit, or a new choice of columns, to past samples in bounded time (section 7). A refit computes a
  * new posterior beside the present posterior: each row of the triangular matrix of the data, with its weight, is a
  * sample for the new posterior. A step of the refit takes one row of this matrix, beginning with the last, or two rows
  * while the rows are short. A new row of the regression updates the matrix from the first row to the last. The new
- * posterior also takes the new row, after the unread rows of the matrix have reduced the row. Every second refit is a
- * trial of a group of columns, and the estimate of a trial is not used.
+ * posterior also takes the new row, after the unread rows of the matrix have reduced the row. From some
+ * blocks on, every second refit tries a group of columns, if there is one, and the estimate of a trial is not used.
  */
+#include <string.h>
+
 #include "real_math.h"
 #include "regression.h"
 
@@ -16,7 +18,7 @@
  * confident and over 20 % wrong for 0.42 % of the time. With 10 or 20, the share was 0.54 or 0.47 %.
  */
 #define SH_FIRST_TRIAL ((sh_real)15)
-/* Pause between two refits before groups are tried [s]. A refit removes noise (detail 14) and computes the misfit. */
+/* Pause between two refits before groups are tried [s]. A refit removes noise (section 6) and computes the misfit. */
 #define SH_FIRST_PAUSE ((sh_real)0.2)
 /* A group of columns is used if it increases the log evidence by the first number plus the second number for each block
  * [1]. Such a group reduces the variance of the error by a tenth. The limit is necessary, because rounding of a
@@ -30,9 +32,9 @@
  */
 #define SH_KNEE_GAIN_PER_BLOCK ((sh_real)0.01)
 
-/* Returns the section 0..3 of the posterior that contains column i; -1 if the column is not used. Section 1 contains
- * the columns of the spring, so that their variances need few rows of U. Section 2 contains columns of the motor, whose
- * information is changed or whose variance is used. Section 3 contains the group of columns that is tried.
+/* Returns the part 0..3 of the posterior that contains column i; -1 if the column is not used. Part 1 contains
+ * the columns of the spring, so that their variances need few rows of U. Part 2 contains columns of the motor, whose
+ * information is changed or whose variance is used. Part 3 contains the group of columns that is tried.
  */
 static int place_of(const sh_refit *refit, const sh_columns *columns, const sh_signals *signals,
                     const sh_parameters *p, int i)
@@ -72,6 +74,13 @@ static int choose_columns(const sh_refit *refit, const sh_columns *columns,
     return size;
 }
 
+void sh_refit_start(sh_refit *refit)
+{
+    refit->trial = refit->last_trial = 0;
+    (void)memset(refit->used, 0, sizeof refit->used);
+    refit->pause = 0;
+}
+
 void sh_refit_begin(sh_refit *refit, const sh_columns *columns, const sh_signals *signals,
                     const sh_samples *samples, sh_real variance_factor, const sh_parameters *p)
 {
@@ -105,7 +114,7 @@ static int next_trial(sh_refit *refit, const sh_columns *columns, const sh_signa
     return 0;
 }
 
-/* ln p(y | with the group) - ln p(y | without) = sum over its columns of (D z^2 - ln D) / 2 */
+/* (F23): ln p(y | with the group) - ln p(y | without) = sum over its columns of (D z^2 - ln D) / 2 */
 static sh_real gain_of_evidence(const sh_refit *refit, const sh_columns *columns)
 {
     const sh_posterior *posterior = &refit->posterior;
@@ -140,7 +149,7 @@ void sh_refit_decide_about_group(sh_refit *refit, const sh_columns *columns, sh_
     }
 }
 
-/* Noise is removed from the column of the inertia (detail 7) before the column of the motor torque (detail 14). In the
+/* Noise is removed from the column of the inertia (F13) before the column of the motor torque (F15). In the
  * other order, the rounding error in the column of the inertia would bias the column of the motor torque.
  */
 void sh_refit_remove_noise(sh_refit *refit, const sh_columns *columns, const sh_column_noise *noise,
@@ -212,9 +221,9 @@ int sh_refit_end(sh_refit *refit, const sh_columns *columns, const sh_signals *s
 }
 
 /* A refit changes the estimate only little before there are enough blocks. */
-int sh_refit_is_due(const sh_refit *refit, sh_real N)
+int sh_refit_is_due(const sh_refit *refit, sh_real N, sh_real duration)
 {
-    const sh_real pause = N < SH_FIRST_TRIAL ? SH_FIRST_PAUSE : SH_REFIT_PAUSE * N * SH_BLOCK;
+    const sh_real pause = N < SH_FIRST_TRIAL ? SH_FIRST_PAUSE : SH_REFIT_PAUSE * N * duration;
 
     return refit->pause >= pause;
 }

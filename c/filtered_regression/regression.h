@@ -1,5 +1,5 @@
-/* Interfaces between the files of FilteredRegression. Numbers of a "point" or "detail" refer to
- * docs/filtered-regression.md, which has the derivations. A constant that is a choice is in the file that uses it, with
+/* Interfaces between the files of FilteredRegression. The equations (F1), (F2) and so on, and the
+ * sections, are those of docs/filtered-regression/how-it-works.md, which has the derivations. A constant that is a choice is in the file that uses it, with
  * its unit and its reason; here are those of several files.
  */
 #ifndef SH_REGRESSION_H
@@ -7,9 +7,15 @@
 
 #include "information.h"
 
+/* Number of time constants 1/w after which the start of a filter counts as decayed [1]: 5e-4 of the start are left. */
+#define SH_FORGOTTEN ((sh_real)12)
+/* More samples than the test of rest takes with the least w T, 1e-4. */
+#define SH_LONGEST_REST 200000
+
 enum {
     SH_ROW_JOBS = 7,   /* number of jobs by which a row changes the state */
-    SH_REFIT_JOBS = 16 /* number of jobs of a refit after its rows */
+    SH_BLOCK_JOBS = 4, /* number of jobs of a full block */
+    SH_REFIT_JOBS = 15 /* number of jobs of a refit after its rows */
 };
 
 /* Flags for the quantities that a step changes. The values may be added up. */
@@ -40,7 +46,7 @@ typedef struct {
     sh_real lasting;  /* factor in R by errors that last, >= 1 */
     sh_real torque;   /* variance of the filtered y by noise of the torque [(N.m)2] */
     sh_real friction; /* variance by friction of unknown sign [(N.m)2] */
-    sh_real share; /* lambda of detail 14: torque over the whole variance of the filtered y, 0..1 */
+    sh_real share;    /* lambda of (F14): torque over the whole variance of the filtered y, 0..1 */
 } sh_row_noise;
 
 /* ---- columns.c --------------------------------------------------------------------------- */
@@ -73,9 +79,8 @@ enum {
 
 /* Flags for the properties of a column. */
 enum {
-    SH_IS_CURVE = 1,   /* a part of the curve of the spring, which may drift */
-    SH_IS_POWER = 2,   /* a power of the deformation: its coefficient is an eta */
-    SH_IS_EQUATION = 4 /* a term of the equation of motion, not an additional effect */
+    SH_IS_CURVE = 1, /* a part of the curve of the spring, which may drift */
+    SH_IS_POWER = 2  /* a power of the deformation: its coefficient is an eta */
 };
 
 typedef struct {
@@ -120,7 +125,7 @@ void sh_joint_point_at(sh_joint_point *point, const sh_columns *columns, const s
                        sh_real theta, sh_real q, sh_real phi, sh_real set_point,
                        const sh_real *stop);
 
-/* Point 6: sets the slope of a dead zone to 0 if the dead zone is a gap. Returns the variance of the slope near a knee
+/* Section 1: sets the slope of a dead zone to 0 if the dead zone is a gap. Returns the variance of the slope near a knee
  * [(N.m/rad)2], because the deformation at the knee is not known exactly.
  */
 sh_real sh_columns_judge_knees(const sh_columns *columns, const sh_parameters *p,
@@ -138,7 +143,7 @@ sh_real sh_columns_y(const sh_parameters *p, const sh_filtered *f);
 void sh_columns_row(const sh_columns *columns, const sh_mean *mean, const sh_feedback *feedback,
                     const sh_parameters *p, sh_real *x);
 
-/* Detail 14: removes the noise of the motor torque, which y also contains, from the column of the motor torque in x.
+/* (F14): removes the noise of the motor torque, which y also contains, from the column of the motor torque in x.
  * The prediction error of y is epsilon [N.m]. Sets `left` to the remaining noise times R. Returns the change of the
  * predicted y [N.m].
  */
@@ -146,7 +151,7 @@ sh_real sh_columns_remove_noise(const sh_columns *columns, const sh_real *beta,
                                 const sh_row_noise *noise, sh_real epsilon, sh_real *x,
                                 sh_column_noise *left);
 
-/* ---- motion_sign.c: detail 3 ------------------------------------------------------------- */
+/* ---- motion_sign.c: (F7) ---------------------------------------------------------------- */
 
 /* Starts the direction of motion at a position [rad]. The direction is unknown until the position changes. */
 void sh_motion_sign_start(sh_motion_sign *motion, sh_real position);
@@ -157,6 +162,18 @@ void sh_motion_sign_start(sh_motion_sign *motion, sh_real position);
  * slow   velocity below which the sign counts as unknown, times the sample period [rad], > 0
  */
 void sh_motion_sign_step(sh_motion_sign *motion, sh_real position, sh_real count, sh_real slow);
+
+/* ---- gate.c: section 14 ------------------------------------------------------------------ */
+
+/* Sets the limits for the parameters, without knowledge of samples. */
+void sh_gate_start(sh_gate *gate, const sh_columns *columns, const sh_parameters *p);
+
+/* Returns 1 if a joint can give a sample. Then the sample is one of the samples from which the next one is predicted.
+ *
+ * skipped  ticks skipped since the last good sample
+ */
+int sh_gate_take(sh_gate *gate, const sh_parameters *p, const sh_measurement *z, sh_real set_point,
+                 int skipped);
 
 /* ---- signals.c --------------------------------------------------------------------------- */
 
@@ -180,9 +197,6 @@ void sh_signals_begin_anew(sh_signals *signals);
 /* Sets the history to an earlier one, because the last sample is rejected. */
 void sh_signals_restore(sh_signals *signals, const sh_history *history);
 
-/* Counts a time [s] of the start, in which a row may show that the motor was moving. */
-void sh_signals_pass_start(sh_signals *signals, sh_real time);
-
 /* Sets states of the filters of all signals and `filtered` columns to 0 that are too small to matter. */
 void sh_signals_rest(sh_signals *signals, int filtered);
 
@@ -198,7 +212,33 @@ static inline int sh_signals_settle(sh_signals *signals, sh_real time)
 /* Returns the noise variance of theta in the last sample [rad2], and updates the mean of this variance. */
 sh_real sh_signals_watch_theta(sh_signals *signals, const sh_parameters *p);
 
-/* ---- row.c: detail 16 -------------------------------------------------------------------- */
+/* ---- rest.c: section 13 ------------------------------------------------------------------ */
+
+/* Begins the test whether the motor is at rest at the next sample. It lasts until the filters have forgotten their
+ * start.
+ */
+void sh_rest_start(sh_rest *rest, const sh_filter_design *design);
+
+/* Ends the test. */
+void sh_rest_end(sh_rest *rest);
+
+/* Returns 1 until the test ends. */
+static inline int sh_rest_is_open(const sh_rest *rest)
+{
+    return rest->taken <= rest->most;
+}
+
+/* Takes a position [rad]. Returns 1 if the positions so far show that the motor was moving at the first sample.
+ *
+ * count  resolution of the encoder [rad], >= 0
+ * rough  noise variance of the position [rad2], >= 0
+ */
+int sh_rest_take(sh_rest *rest, sh_real theta, sh_real count, sh_real rough);
+
+/* ---- row.c: section 4 -------------------------------------------------------------------- */
+
+/* There is no row yet. */
+void sh_row_start(sh_row *row, sh_mean *mean);
 
 /* Adds a sample to the mean: the filtered signals `now`, and the noise variance of theta [rad2]. If the mean is complete,
  * sets the row, empties the mean, and returns 1.
@@ -213,7 +253,7 @@ void sh_mean_empty(sh_mean *mean);
 /* Sets the weight 1 / R of a row of `size` columns. Returns 0 if the numbers of the row are too large. */
 int sh_row_weigh(sh_row *row, const sh_row_noise *noise, int size);
 
-/* Sets epsilon, and removes the torque noise from the torque column (detail 14). */
+/* Sets epsilon, and removes the torque noise from the torque column (F14). */
 void sh_row_predict(sh_row *row, const sh_columns *columns, const sh_real *beta,
                     const sh_row_noise *noise, sh_column_noise *left);
 
@@ -230,20 +270,15 @@ sh_real sh_noise_of_friction(const sh_signals *signals, const sh_columns *column
                              const sh_posterior *posterior, const sh_real *beta,
                              const sh_parameters *p);
 
-/* Detail 4: returns the variance of a row, of which `friction` is the result of sh_noise_of_friction. The noise of theta
+/* (F9) to (F11): returns the variance of a row, of which `friction` is the result of sh_noise_of_friction. The noise of theta
  * is estimated from the last samples.
  */
 sh_row_noise sh_noise_of_row(const sh_signals *signals, const sh_feedback *feedback,
                              sh_real friction, const sh_parameters *p);
 
-/* R times the false information in a row by rounding: about sigma (point 5) [rad2], about b (detail 7) [(N.m)2]. */
+/* R times the false information in a row by rounding: about sigma (F25) [rad2], about b (F12) [(N.m)2]. */
 sh_real sh_noise_of_deformation(const sh_signals *signals);
 sh_real sh_noise_of_inertia(const sh_signals *signals, const sh_row *row, const sh_parameters *p);
-
-/* Returns 1 if a row x at the start shows that the motor was not at rest (detail 12). */
-int sh_noise_contradicts_rest(const sh_signals *signals, const sh_columns *columns,
-                              const sh_posterior *posterior, const sh_real *beta, const sh_real *x,
-                              const sh_row_noise *noise, const sh_parameters *p);
 
 /* ---- samples.c --------------------------------------------------------------------------- */
 
@@ -292,15 +327,15 @@ void sh_posterior_copy(sh_posterior *to, const sh_posterior *from);
  */
 sh_real sh_posterior_take(sh_posterior *posterior, const sh_real *x, int size, sh_real w);
 
-/* Detail 7: counts the information N [1] of a row about b that is only rounding noise, and the variance Q of N [1]. */
+/* (F12): counts the information N [1] of a row about b that is only rounding noise, and the variance Q of N [1]. */
 void sh_posterior_count_noise(sh_posterior *posterior, sh_real N, sh_real Q);
 
-/* Detail 7: removes as much of the counted noise as possible. The coefficient b of the last column does not become less
+/* Section 6.1: removes as much of the counted noise as possible. The coefficient b of the last column does not become less
  * certain than its prior, prior_B > 0.
  */
 void sh_posterior_remove(sh_posterior *posterior, sh_real prior_B);
 
-/* Detail 14: removes the noise of all samples from the information about column i of the posterior. */
+/* (F15): removes the noise of all samples from the information about column i of the posterior. */
 void sh_posterior_remove_noise(sh_posterior *posterior, sh_real prior_B, int i,
                                const sh_column_noise *noise);
 
@@ -313,10 +348,56 @@ void sh_posterior_estimate(const sh_posterior *posterior, int size, sh_real prio
 sh_variances sh_posterior_variances(const sh_posterior *posterior, sh_real prior_B,
                                     const sh_real *first, const sh_real *second, int count);
 
-/* ---- block.c: detail 8 ------------------------------------------------------------------- */
+/* ---- coefficients.c: the estimate -------------------------------------------------------- */
 
-/* Duration of a block [s]: several times 1/w, and short compared with a motion. */
-#define SH_BLOCK ((sh_real)0.05)
+void sh_coefficients_start(sh_coefficients *coefficients, const sh_parameters *p);
+
+/* Computes the coefficients, and the relative errors of the motor, from the posterior. */
+void sh_coefficients_solve(sh_coefficients *coefficients, const sh_posterior *posterior,
+                           const sh_columns *columns, const sh_parameters *p);
+
+/* Sets the std deviation of the relative error of viscous friction. */
+void sh_coefficients_judge_viscous(sh_coefficients *coefficients, const sh_posterior *posterior,
+                                   const sh_columns *columns, const sh_parameters *p);
+
+/* ---- point.c ----------------------------------------------------------------------------- */
+
+/* What makes torque and stiffness at a point uncertain beside the coefficients. */
+typedef struct {
+    sh_real weights;  /* sum of the weights of the samples in the posterior [1/(N.m)2] */
+    sh_real rounding; /* V_phi, variance of the filtered phi by rounding (F25) [rad2] */
+    sh_real knees;    /* variance of the slope near a knee [(N.m/rad)2] */
+} sh_phi_errors;
+
+/* Limit of |phi| / range.phi below which the estimate may be confident, whatever the powers are [1]. */
+#define SH_LEAST_LIMIT ((sh_real)2)
+
+/* Returns the |phi| [rad] above which the curve is not known. */
+sh_real sh_largest_deformation(const sh_parameters *p);
+
+/* Evaluates torque and stiffness from the coefficients of the spring, the first `count` ones, and the variances of the
+ * torque and of the stiffness. Returns the change of the stiffness with the relative gain of the torque [N.m/rad],
+ * which may overflow.
+ */
+sh_real sh_point_evaluate(sh_point *point, const sh_coefficients *coefficients,
+                          const sh_parameters *p, const sh_joint_point *at, int count,
+                          const sh_variances *variances, const sh_phi_errors *errors);
+
+/* ---- report.c ---------------------------------------------------------------------------- */
+
+/* Sets the outputs that are computed from the coefficients and from the stiffness in the estimate. */
+void sh_report_coefficients(const sh_columns *columns, const sh_coefficients *coefficients,
+                            const sh_parameters *p, const sh_joint_point *at,
+                            sh_estimate *estimate);
+
+/* Returns the reason why the estimate is not confident, SH_DOUBT_*. The variance [(N.m/rad)2] is that of the stiffness
+ * if the gain is right.
+ */
+int sh_report_doubt(const sh_estimate *estimate, const sh_coefficients *coefficients,
+                    sh_real variance, const sh_bank *bank, const sh_misfit *misfit,
+                    const sh_parameters *p);
+
+/* ---- block.c: section 8 ------------------------------------------------------------------ */
 
 /* Sets the length of a block. */
 void sh_block_start(sh_block *block, const sh_signals *signals);
@@ -324,37 +405,23 @@ void sh_block_start(sh_block *block, const sh_signals *signals);
 /* Drops the rows of the block, also if the next rows do not follow without a gap. */
 void sh_block_empty(sh_block *block);
 
-/* Adds a row of `size` columns. */
-void sh_block_take(sh_block *block, const sh_row *row, int size);
-
-static inline int sh_block_is_full(const sh_block *block)
-{
-    return block->rows >= block->length;
-}
-
-/* Sets the mean row of a full block [size: size + SH_RIGHT_SIDES]. Returns its weight, 1 / variance; 0 if it is too
- * large.
+/* Adds a row of `size` columns. If the block is full, sets its mean row, empties the block, and returns 1; but returns 0
+ * if the weight of the mean row would be too large.
  */
-sh_real sh_block_mean(const sh_block *block, const sh_signals *signals, int size,
-                      const sh_parameters *p, sh_real *mean);
+int sh_block_take(sh_block *block, const sh_row *row, const sh_signals *signals, int size,
+                  const sh_parameters *p, sh_block_mean *mean);
 
-/* Returns the number of blocks without lasting errors that have the same information, at most 1. */
-sh_real sh_block_count(const sh_block *block);
-
-/* ---- misfit.c: details 8 and 9 ----------------------------------------------------------- */
+/* ---- misfit.c: sections 8 and 9 ---------------------------------------------------------- */
 
 /* Variance factor above which data are forgotten, and a doubt is reported as a misfit [1]. */
 #define SH_CONTRADICTION ((sh_real)1.5)
 
-void sh_misfit_start(sh_misfit *misfit, int size);
+void sh_misfit_start(sh_misfit *misfit);
 
-/* Updates the recent blocks by the mean row of a block with weight w, which counts as `count` blocks and `time` [s]. */
-void sh_misfit_take(sh_misfit *misfit, const sh_real *mean, sh_real w, sh_real count, sh_real time);
+/* Updates the usual misfit, and the number of blocks in it, after a block of a duration [s]. */
+void sh_misfit_learn(sh_misfit *misfit, sh_real duration);
 
-/* Updates the usual misfit, and the number of blocks in it, after a block. */
-void sh_misfit_learn(sh_misfit *misfit);
-
-/* Drops the recent blocks after a change of the joint. */
+/* Lets the misfit be larger than before without surprise, after a change of the joint. */
 void sh_misfit_begin_anew(sh_misfit *misfit);
 
 /* Returns the mean of a number of blocks, at least 1, after one more value. The value counts as at most `most` times the
@@ -365,9 +432,6 @@ sh_real sh_usual(sh_real mean, sh_real value, sh_real most, sh_real blocks);
 /* Returns the largest sum of N squared errors over their variances that may be due to chance. */
 sh_real sh_largest_by_chance(sh_real N);
 
-/* Computes the misfit of the recent blocks, unless friction or the curve drifts. */
-void sh_misfit_judge_recent(sh_misfit *misfit, const sh_real *beta, int drifts);
-
 /* Computes the misfit and the variance factor of all N blocks with the coefficients beta, of which a number of
  * parameters is estimated. The matrix of the blocks also contains the share `prior` of the prior, 0..1.
  */
@@ -377,16 +441,12 @@ void sh_misfit_judge(sh_misfit *misfit, const sh_information *blocks, sh_real pr
 /* Returns 1 if the misfit is far above the usual one. */
 int sh_misfit_is_sudden(const sh_misfit *misfit);
 
-/* Forgets the oldest of the recent blocks. Returns the duration of the blocks since the last call [s]. */
-sh_real sh_misfit_forget_recent(sh_misfit *misfit, const sh_parameters *p);
+/* Returns the factor by which data are forgotten for the blocks since the last call, 0..1: 1 unless the N blocks that
+ * count contradict the model.
+ */
+sh_real sh_misfit_forgetting(sh_misfit *misfit, sh_real N, int parameters, const sh_parameters *p);
 
-/* Returns 1 if N blocks contradict the model so far that data are forgotten. */
-int sh_misfit_contradicts(const sh_misfit *misfit, sh_real N, int parameters);
-
-/* Returns the factor by which data are forgotten after a motion of the duration `moving` [s], 0..1. */
-sh_real sh_misfit_forgetting(const sh_misfit *misfit, sh_real moving, const sh_parameters *p);
-
-/* ---- bank.c: details 10 and 15 ----------------------------------------------------------- */
+/* ---- bank.c: section 12 ------------------------------------------------------------------ */
 
 /* Evidence above which the estimate is in doubt, and evidence above which a change is detected [1]. The second number
  * is multiplied by the square root of the usual squared error. Without a change, one of 3860 runs of 22 s with every
@@ -407,11 +467,13 @@ void sh_bank_start(sh_bank *bank, int size);
 /* Returns the blocks under the hypothesis that holds now. */
 const sh_information *sh_bank_present(const sh_bank *bank);
 
-/* Take the mean row of a block of weight w for one hypothesis, in this order. */
-void sh_bank_take_for_spring(sh_bank *bank, const sh_columns *columns, const sh_real *mean,
-                             sh_real w);
-void sh_bank_take_as_before(sh_bank *bank, const sh_real *mean, sh_real w);
-void sh_bank_take_for_friction(sh_bank *bank, const sh_real *mean, sh_real w);
+/* Take the mean row of a block for one hypothesis, in this order. From the coefficients beta of the columns follows by
+ * how much the bias may change together with the spring.
+ */
+void sh_bank_take_for_spring(sh_bank *bank, const sh_columns *columns, const sh_real *beta,
+                             const sh_block_mean *mean);
+void sh_bank_take_as_before(sh_bank *bank, const sh_block_mean *mean);
+void sh_bank_take_for_friction(sh_bank *bank, const sh_block_mean *mean);
 
 /* Counts the last block as `count` blocks. */
 void sh_bank_count(sh_bank *bank, sh_real count);
@@ -419,11 +481,11 @@ void sh_bank_count(sh_bank *bank, sh_real count);
 /* Compares the hypotheses by their errors of the last block, after it was counted. The usual misfit is a mean over
  * `judged` blocks.
  */
-sh_finding sh_bank_judge(sh_bank *bank, const sh_columns *columns, sh_real judged,
-                         sh_real usual_misfit, const sh_parameters *p);
+sh_finding sh_bank_judge(sh_bank *bank, const sh_columns *columns, const sh_real *beta,
+                         sh_real judged, sh_real usual_misfit, const sh_parameters *p);
 
 /* Replaces the hypothesis `constant` by what was found. */
-void sh_bank_adopt(sh_bank *bank, const sh_columns *columns, sh_finding found);
+void sh_bank_adopt(sh_bank *bank, const sh_columns *columns, const sh_real *beta, sh_finding found);
 
 /* Tells the bank that the estimate contains the adopted change. */
 void sh_bank_followed(sh_bank *bank);
@@ -447,12 +509,18 @@ void sh_bank_take_drift(sh_bank *bank);
 /* Decides by the residuals whether friction drifts, except during a test of other friction. */
 void sh_bank_judge_drift(sh_bank *bank);
 
-/* While the test of other friction begins, makes step 0, 1 or 2 after a row that does not complete a block: gives a
- * column of friction the variance of its prior. Returns 0 if nothing was left to do.
+/* Returns 1 while the test of other friction begins: columns of friction get the variance of their priors once more,
+ * as process noise.
  */
-int sh_bank_widen_friction(sh_bank *bank, const sh_columns *columns, int step);
+int sh_bank_is_widening(const sh_bank *bank, const sh_columns *columns);
 
-/* ---- refit.c: detail 6 ------------------------------------------------------------------- */
+/* Makes step 0, 1 or 2 of a row for the next one of these columns. */
+void sh_bank_widen_friction(sh_bank *bank, int step);
+
+/* ---- refit.c: section 7 ------------------------------------------------------------------ */
+
+/* No refit has begun, and no group is used. */
+void sh_refit_start(sh_refit *refit);
 
 /* Starts a refit of the samples with the same trial. */
 void sh_refit_begin(sh_refit *refit, const sh_columns *columns, const sh_signals *signals,
@@ -486,16 +554,19 @@ void sh_refit_close(sh_refit *refit);
 int sh_refit_end(sh_refit *refit, const sh_columns *columns, const sh_signals *signals, sh_real N,
                  const sh_parameters *p);
 
-/* Returns 1 if the next refit may begin after N blocks. */
-int sh_refit_is_due(const sh_refit *refit, sh_real N);
+/* Returns 1 if the next refit may begin after N blocks of a duration [s]. */
+int sh_refit_is_due(const sh_refit *refit, sh_real N, sh_real duration);
 
-/* ---- schedule.c: detail 16, a part of the tick ------------------------------------------- */
+/* ---- schedule.c: section 15, a part of the tick ------------------------------------------ */
 
 /* Starts the first refit, and the posterior from the prior. */
 void sh_schedule_start(sh_regression_state *state, const sh_parameters *p);
 
 /* There is a new row, whose jobs begin. */
 void sh_schedule_row(sh_schedule *schedule);
+
+/* There is a gap behind the last row. */
+void sh_schedule_interrupt(sh_schedule *schedule);
 
 /* Makes the jobs of the last row that belong to this tick. The ticks until the next row share all jobs. Returns
  * SH_NEW_*.

@@ -1,4 +1,4 @@
-/* A row of the regression: the mean of K samples (detail 16), its weight, and the error of its prediction. */
+/* A row of the regression: the mean of K samples (section 4), its weight, and the error of its prediction. */
 #include <string.h>
 
 #include "real_math.h"
@@ -19,6 +19,12 @@ static void add_signals(sh_mean *mean, const sh_filters *filters, const sh_filte
         mean->output[i] +=
             share * (filters->input[SH_FILTERS + i] - filters->behind[2][SH_FILTERS + i]);
     }
+}
+
+void sh_row_start(sh_row *row, sh_mean *mean)
+{
+    (void)memset(row, 0, sizeof *row);
+    sh_mean_empty(mean);
 }
 
 int sh_row_add(sh_row *row, sh_mean *mean, const sh_signals *signals, const sh_columns *columns,
@@ -57,7 +63,7 @@ int sh_row_weigh(sh_row *row, const sh_row_noise *noise, int size)
     return row->w > 0;
 }
 
-/* epsilon = y - x' beta without torque noise (detail 14) */
+/* epsilon = y - x' beta without torque noise (F14) */
 void sh_row_predict(sh_row *row, const sh_columns *columns, const sh_real *beta,
                     const sh_row_noise *noise, sh_column_noise *left)
 {

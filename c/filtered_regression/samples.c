@@ -1,4 +1,4 @@
-/* The data of all samples: their information, and the sums that describe the noise in it (details 7 and 14). */
+/* The data of all samples: their information, and the sums that describe the noise in it (section 6). */
 #include <string.h>
 
 #include "real_math.h"
@@ -6,7 +6,12 @@
 
 void sh_samples_start(sh_samples *samples, int size)
 {
+    const sh_column_noise none = {0, 0};
+
     sh_information_start(&samples->data, size, SH_LEAST_INFORMATION);
+    samples->weights = samples->surplus = samples->spread = 0;
+    samples->noise = none;
+    samples->drift.w = 0;
 }
 
 void sh_samples_count_noise(sh_samples *samples, const sh_column_noise *left, sh_real w, sh_real N,

@@ -1,6 +1,6 @@
 /* The schedule of the tick: the steps by which a row becomes data, misfit and the next estimate, distributed over the
- * ticks until the next row (detail 16). A step changes at most one triangular matrix, or up to four in a refit with long
- * rows. When a change is adopted, a step also copies matrices. As the rest of the tick, this file knows all parts; it is
+ * ticks until the next row (section 15). A step updates one triangular matrix, or three where the curve drifts; with long
+ * rows, it makes up to four steps of a refit. When a change is adopted, a step also copies matrices. As the rest of the tick, this file knows all parts; it is
  * the only one in which the order of steps matters.
  */
 #include "real_math.h"
@@ -9,8 +9,8 @@
 /* Process noise of drifting friction, divided by the variance of the friction's prior [1/s]. */
 #define SH_FRICTION_DRIFT ((sh_real)1e-3)
 /* Duration of a row for each step of a refit in one step of the row [s], and largest number of these steps [1]. A row
- * below 13 ms has one step of the refit, and a row from 26 ms on has four. With one step in long rows, a wrong choice
- * of columns would last for 0.8 s at 250 Hz. A row of several samples has more samples than steps.
+ * below 13 ms has one step of the refit, and a row from 26 ms on has four, always fewer than K. With one step in long
+ * rows, a wrong choice of columns would last for 0.8 s at 250 Hz. A row of several samples has more samples than steps.
  */
 #define SH_TIME_OF_STEP ((sh_real)0.0065)
 #define SH_MOST_STEPS 4
@@ -18,7 +18,7 @@
 /* ---- forgetting and drift ---------------------------------------------------------------- */
 
 /* P += drift time / (v'v + R) v v'. The vector v contains the columns of the curve in the last row, and R is the
- * variance of this row (detail 11). The drift reduces the information along v and the sum of the weights by the same
+ * variance of this row (F22). The drift reduces the information along v and the sum of the weights by the same
  * factor.
  */
 static void let_curve_drift(sh_regression_state *state, const sh_parameters *p, sh_real time)
@@ -38,17 +38,12 @@ static void let_curve_drift(sh_regression_state *state, const sh_parameters *p, 
     }
 }
 
-/* Forgets data that contradict the model. The time of forgetting is the duration of the blocks, so no data are forgotten
- * at rest or with few blocks.
- */
 static void forget(sh_regression_state *state, const sh_parameters *p)
 {
-    const sh_real moving = sh_misfit_forget_recent(&state->misfit, p);
+    const sh_real factor = sh_misfit_forgetting(&state->misfit, state->bank.count,
+                                                state->posterior.information.size, p);
 
-    if (sh_misfit_contradicts(&state->misfit, state->bank.count,
-                              state->posterior.information.size)) {
-        const sh_real factor = sh_misfit_forgetting(&state->misfit, moving, p);
-
+    if (factor < 1) {
         sh_samples_forget(&state->samples, factor);
         sh_bank_forget(&state->bank, factor);
     }
@@ -60,8 +55,7 @@ static void forget(sh_regression_state *state, const sh_parameters *p)
 static int estimate_coefficients(sh_regression_state *state, const sh_parameters *p, int argument)
 {
     (void)argument;
-    sh_posterior_estimate(&state->posterior, state->columns.size, p->prior.B, state->beta,
-                          state->per_gain);
+    sh_coefficients_solve(&state->coefficients, &state->posterior, &state->columns, p);
     return SH_NEW_COEFFICIENTS;
 }
 
@@ -106,50 +100,25 @@ static int use_variances(sh_regression_state *state, const sh_parameters *p, int
     return SH_NEW_VARIANCES;
 }
 
-/* While friction or the curve drifts, the recent blocks are not judged, because they do not contain this drift. */
-static int judge_recent_blocks(sh_regression_state *state, const sh_parameters *p, int argument)
-{
-    const int drifts = state->bank.friction_drifts || p->regression.drift > 0;
-
-    (void)argument;
-    sh_misfit_judge_recent(&state->misfit, state->beta, drifts);
-    return 0;
-}
-
 static int judge_blocks(sh_regression_state *state, const sh_parameters *p, int argument)
 {
     const sh_bank *bank = &state->bank;
 
     (void)argument;
-    sh_misfit_judge(&state->misfit, sh_bank_present(bank), bank->prior, bank->count, state->beta,
-                    state->posterior.information.size, p);
+    sh_misfit_judge(&state->misfit, sh_bank_present(bank), bank->prior, bank->count,
+                    state->coefficients.beta, state->posterior.information.size, p);
     return 0;
 }
 
-/* Sets the std deviation of the relative error of viscous friction. */
-static void set_friction_std(sh_regression_state *state, const sh_parameters *p)
-{
-    const sh_columns *columns = &state->columns;
-    const int i = sh_columns_place(columns, SH_COLUMN_VISCOUS);
-
-    if (i >= 0) {
-        sh_real c[SH_MAX_COLUMNS] = {0};
-
-        c[i] = columns->column[i].prior;
-        state->friction_std = sh_std_deviation(
-            sh_posterior_variances(&state->posterior, p->prior.B, c, c, columns->size).first);
-    }
-}
-
-/* Ends a refit. After every refit that changed the estimate, the next refit is a trial. Before a trial, nothing else
- * changes, so the other jobs are left out.
+/* Ends a refit. Once there are enough blocks, a trial follows each refit that changed the estimate, if there is a group
+ * to try. Drift and forgetting then wait until the trial ends, so that the trial has the same data.
  */
 static int end_refit(sh_regression_state *state, const sh_parameters *p, int argument)
 {
     (void)argument;
-    set_friction_std(state, p);
+    sh_coefficients_judge_viscous(&state->coefficients, &state->posterior, &state->columns, p);
     if (sh_refit_end(&state->refit, &state->columns, &state->signals, state->bank.count, p)) {
-        state->schedule.job = SH_REFIT_JOBS;
+        state->schedule.refit_job = SH_REFIT_JOBS;
     }
     return 0;
 }
@@ -211,7 +180,6 @@ static const sh_job REFIT[SH_REFIT_JOBS] = {
     {use_posterior, 0},
     {use_coefficients, 0},
     {use_variances, 0},
-    {judge_recent_blocks, 0},
     {judge_blocks, 0},
     {end_refit, 0},
     {prepare_drift_of_bank, SH_COLUMN_VISCOUS},
@@ -225,14 +193,24 @@ static const sh_job REFIT[SH_REFIT_JOBS] = {
     {forget_data, 0},
 };
 
-/* Starts a refit. The weight of the data is 1 / kappa^2, or in a trial 1 / max(1, q, q_recent). */
+/* Makes the next job of a table, and counts it. Returns SH_NEW_*. */
+static int make_next(const sh_job *table, int *next, sh_regression_state *state,
+                     const sh_parameters *p)
+{
+    const sh_job *job = &table[*next];
+
+    *next += 1;
+    return job->make(state, p, job->argument);
+}
+
+/* Starts a refit. The weight of the data is 1 / kappa^2, or in a trial 1 / max(1, q). */
 static void begin_refit(sh_regression_state *state, const sh_parameters *p)
 {
     const sh_misfit *misfit = &state->misfit;
 
     sh_refit_begin(&state->refit, &state->columns, &state->signals, &state->samples,
                    state->refit.trial == 0 ? misfit->variance_factor : misfit->square, p);
-    state->schedule.job = 0;
+    state->schedule.refit_job = 0;
 }
 
 /* Makes one step of a refit: reads one or two rows of the data, or makes the next job. Returns SH_NEW_*. */
@@ -243,13 +221,10 @@ static int advance_refit(sh_regression_state *state, const sh_parameters *p)
     if (sh_refit_read(&state->refit, &state->samples.data)) {
         return 0;
     }
-    if (schedule->job < SH_REFIT_JOBS) {
-        const sh_job *job = &REFIT[schedule->job];
-
-        schedule->job += 1;
-        return job->make(state, p, job->argument);
+    if (schedule->refit_job < SH_REFIT_JOBS) {
+        return make_next(REFIT, &schedule->refit_job, state, p);
     }
-    if (sh_refit_is_due(&state->refit, state->bank.count)) {
+    if (sh_refit_is_due(&state->refit, state->bank.count, state->block.duration)) {
         begin_refit(state, p);
     }
     return 0;
@@ -260,14 +235,14 @@ static int advance_refit(sh_regression_state *state, const sh_parameters *p)
 /* Adopts the hypothesis that the bank found: its matrix also replaces the data of all samples, because their samples
  * before the change contradict its information about the motor. The next posterior contains the prior twice, because the
  * blocks also contain the prior, but the blocks soon outweigh the prior. The sums that describe the noise of single
- * samples begin at 0, because blocks hardly contain this noise.
+ * samples begin at 0, because blocks hardly contain this noise. The number of blocks and their squares stay.
  */
 static void adopt(sh_regression_state *state, const sh_parameters *p, sh_finding found)
 {
     if (found == SH_FOUND_NOTHING) {
         return;
     }
-    sh_bank_adopt(&state->bank, &state->columns, found);
+    sh_bank_adopt(&state->bank, &state->columns, state->coefficients.beta, found);
     sh_misfit_begin_anew(&state->misfit);
     sh_samples_replace(&state->samples, &state->bank.constant);
     sh_refit_drop_trial(&state->refit);
@@ -277,45 +252,73 @@ static void adopt(sh_regression_state *state, const sh_parameters *p, sh_finding
     }
 }
 
-/* Counts the block, and judges what the hypotheses predicted. */
-static void finish_block(sh_regression_state *state, const sh_parameters *p, const sh_real *mean,
-                         sh_real w)
+static int take_block_for_spring(sh_regression_state *state, const sh_parameters *p, int argument)
 {
-    const sh_signals *signals = &state->signals;
-    const sh_real count = sh_block_count(&state->block);
-    const sh_real samples = state->block.length * (sh_real)signals->decimation;
-    sh_misfit *misfit = &state->misfit;
-
-    sh_misfit_take(misfit, mean, w, count, count * samples * signals->design.T);
-    sh_bank_count(&state->bank, count);
-    if (p->regression.memory > 0) {
-        sh_misfit_learn(misfit);
-    }
-    adopt(state, p, sh_bank_judge(&state->bank, &state->columns, misfit->judged, misfit->usual, p));
-    sh_block_empty(&state->block);
+    (void)p;
+    (void)argument;
+    sh_bank_take_for_spring(&state->bank, &state->columns, state->coefficients.beta,
+                            &state->block_mean);
+    return 0;
 }
 
-/* Makes step 0..3 with the mean row of a full block: each step updates the matrix of one hypothesis. Another spring is
- * first, because this hypothesis may begin anew before this block.
- */
-static void take_block_in_steps(sh_regression_state *state, const sh_parameters *p, int step)
+static int take_block_as_before(sh_regression_state *state, const sh_parameters *p, int argument)
 {
-    sh_real mean[SH_MAX_ROW] = {0}, w;
+    (void)p;
+    (void)argument;
+    sh_bank_take_as_before(&state->bank, &state->block_mean);
+    return 0;
+}
 
-    if (!sh_block_is_full(&state->block)) {
-        return;
+static int take_block_for_friction(sh_regression_state *state, const sh_parameters *p, int argument)
+{
+    (void)p;
+    (void)argument;
+    sh_bank_take_for_friction(&state->bank, &state->block_mean);
+    return 0;
+}
+
+/* Counts the block, and judges what the hypotheses predicted. */
+static int judge_hypotheses(sh_regression_state *state, const sh_parameters *p, int argument)
+{
+    sh_misfit *misfit = &state->misfit;
+
+    (void)argument;
+    sh_bank_count(&state->bank, state->block_mean.count);
+    if (p->regression.memory > 0) {
+        sh_misfit_learn(misfit, state->block_mean.duration);
     }
-    w = sh_block_mean(&state->block, &state->signals, state->columns.size, p, mean);
-    if (!(w > 0)) {
-        sh_block_empty(&state->block);
-    } else if (step == 0) {
-        sh_bank_take_for_spring(&state->bank, &state->columns, mean, w);
-    } else if (step == 1) {
-        sh_bank_take_as_before(&state->bank, mean, w);
-    } else if (step == 2) {
-        sh_bank_take_for_friction(&state->bank, mean, w);
-    } else {
-        finish_block(state, p, mean, w);
+    adopt(state, p,
+          sh_bank_judge(&state->bank, &state->columns, state->coefficients.beta, misfit->judged,
+                        misfit->usual, p));
+    return 0;
+}
+
+/* What a full block does: each job updates the matrix of one hypothesis. Another spring is first, because this
+ * hypothesis may begin anew before this block.
+ */
+static const sh_job BLOCK[SH_BLOCK_JOBS] = {
+    {take_block_for_spring, 0},
+    {take_block_as_before, 0},
+    {take_block_for_friction, 0},
+    {judge_hypotheses, 0},
+};
+
+/* Makes the next job of the last full block. Returns 0 if all are done. */
+static int advance_block(sh_regression_state *state, const sh_parameters *p)
+{
+    if (state->schedule.block_job >= SH_BLOCK_JOBS) {
+        return 0;
+    }
+    (void)make_next(BLOCK, &state->schedule.block_job, state, p);
+    return 1;
+}
+
+/* Adds the last row to the block, unless a gap in the samples follows the row. */
+static void take_row_in_block(sh_regression_state *state, const sh_parameters *p)
+{
+    if (!state->schedule.interrupted && sh_block_take(&state->block, &state->row, &state->signals,
+                                                      state->columns.size, p, &state->block_mean)) {
+        state->schedule.block_job = 0;
     }
 }
 
@@ -367,21 +370,20 @@ static int steps_of_refit(const sh_signals *signals)
  * block. Otherwise, the test of other friction or the refit makes its next steps: several if rows are long, so that the
  * duration of a refit does not depend on the length of the rows.
  */
-static int advance_block(sh_regression_state *state, const sh_parameters *p, int step)
+static int advance_others(sh_regression_state *state, const sh_parameters *p, int step)
 {
-    const int was_full = sh_block_is_full(&state->block), steps = steps_of_refit(&state->signals);
-    int news = 0, i;
+    const int steps = steps_of_refit(&state->signals);
+    int is_busy = advance_block(state, p), news = 0, i;
 
     if (step == 0) {
-        take_block_in_steps(state, p, 3);
-        sh_block_take(&state->block, &state->row, state->columns.size);
+        take_row_in_block(state, p);
     }
-    take_block_in_steps(state, p, step);
-    if (was_full || sh_block_is_full(&state->block) ||
-        sh_bank_widen_friction(&state->bank, &state->columns, step)) {
-        return 0;
+    is_busy = is_busy || advance_block(state, p);
+    if (!is_busy && sh_bank_is_widening(&state->bank, &state->columns)) {
+        sh_bank_widen_friction(&state->bank, step);
+        is_busy = 1;
     }
-    for (i = 0; i < steps; ++i) {
+    for (i = 0; i < steps && !is_busy; ++i) {
         news |= advance_refit(state, p);
     }
     return news;
@@ -389,23 +391,33 @@ static int advance_block(sh_regression_state *state, const sh_parameters *p, int
 
 static const sh_job ROW[SH_ROW_JOBS] = {
     {estimate_coefficients, 0}, {estimate_variances, 0}, {take_row_as_sample, 0},
-    {take_rest_of_row, 0},      {advance_block, 0},      {advance_block, 1},
-    {advance_block, 2},
+    {take_rest_of_row, 0},      {advance_others, 0},     {advance_others, 1},
+    {advance_others, 2},
 };
 
 /* ---- the ticks --------------------------------------------------------------------------- */
 
 void sh_schedule_start(sh_regression_state *state, const sh_parameters *p)
 {
-    state->schedule.tick = state->signals.decimation; /* there is no row yet */
-    state->friction_std = p->prior.D_theta;
+    const sh_schedule nothing = {0};
+
+    state->schedule = nothing;
+    state->schedule.tick = state->signals.decimation; /* there is no row yet, and no block */
+    state->schedule.block_job = SH_BLOCK_JOBS;
+    sh_refit_start(&state->refit);
     begin_refit(state, p);
-    state->posterior = state->refit.posterior;
+    sh_posterior_copy(&state->posterior, &state->refit.posterior);
 }
 
 void sh_schedule_row(sh_schedule *schedule)
 {
     schedule->tick = 0;
+    schedule->interrupted = 0;
+}
+
+void sh_schedule_interrupt(sh_schedule *schedule)
+{
+    schedule->interrupted = 1;
 }
 
 /* Returns the first job that belongs to a tick after the row, if all jobs are distributed over `ticks` ticks. */

@@ -4,10 +4,8 @@
 #include "regression.h"
 #include "state_variable_filter.h"
 
-/* Largest corner frequency divided by W_c of point 1 [1]. Above 2, the noise of y is not white. */
+/* Largest corner frequency divided by W_c of (F6) [1]. Above 2, the noise of y is not white. */
 #define SH_LARGEST_CORNER ((sh_real)1.42)
-/* Number of time constants 1/w after which the start of a filter counts as decayed [1]: 5e-4 of the start are left. */
-#define SH_FORGOTTEN ((sh_real)12)
 /* Change of phi in a sample, divided by the finer encoder resolution, below which phi counts as constant [1]. */
 #define SH_RESTS ((sh_real)0.25)
 /* Spacing of the rows divided by 1/w, and largest number of samples of a row [1]. The spacing 1.8 has the same results,
@@ -19,7 +17,7 @@
 #define SH_NOISE_TIME ((sh_real)0.1)
 
 /* At W_c = sqrt(s_tau / (B |gamma| s_n)), s_n = count / sqrt(12), the noise of the torque and the rounding of theta
- * contribute equally to y (point 1). The filter is designed only for w T >= 1e-4.
+ * contribute equally to y (F6). The filter is designed only for w T >= 1e-4.
  */
 static sh_real bandwidth_of(const sh_parameters *p)
 {
@@ -34,7 +32,7 @@ static sh_real bandwidth_of(const sh_parameters *p)
         (sh_real)1e-4 / p->samplePeriod);
 }
 
-/* Returns the number of samples of a row, K = 2.5 / (w T), 1..8. Longer rows would lose information. */
+/* Returns the number of samples of a row, K = 2.5 / (w T), 1..8 (F8). Longer rows would lose information. */
 static int decimation_of(const sh_parameters *p)
 {
     const sh_real wT = bandwidth_of(p) * p->samplePeriod;
@@ -61,14 +59,12 @@ void sh_signals_start(sh_signals *signals, const sh_parameters *p)
                                    &signals->gain_second);
     signals->gain /= (sh_real)signals->decimation; /* of a mean of K samples */
     signals->gain_second /= (sh_real)signals->decimation;
-    history->starting = SH_FORGOTTEN / signals->design.w;
     history->phi_min = SH_LARGE; /* no deformation yet */
     history->phi_max = -SH_LARGE;
 }
 
 void sh_signals_unsettle(sh_signals *signals)
 {
-    signals->history.starting = 0;
     signals->history.settling = SH_FORGOTTEN / signals->design.w;
 }
 
@@ -86,7 +82,7 @@ static void take_deformation(sh_signals *signals, const sh_parameters *p, sh_rea
     history->phi = phi;
 }
 
-/* Returns the load that causes friction: the spring torque, or the last fitted y without a known stiffness (detail 13).
+/* Returns the load that causes friction: the spring torque, or the last fitted y without a known stiffness (section 1).
  */
 static sh_real load_of(const sh_columns *columns, const sh_real *beta, const sh_feedback *feedback,
                        const sh_joint_point *at)
@@ -115,7 +111,7 @@ static void set_inputs(const sh_motion_sign *motion, const sh_parameters *p,
     x[SH_FILTER_LOAD] = -sh_fabs(load) * motion->sign;
 }
 
-/* Starts the filters at the first sample. The motor is assumed to be at rest, at any torque (detail 12), so the filter
+/* Starts the filters at the first sample. The motor is assumed to be at rest, at any torque (section 13), so the filter
  * of theta starts at the present position. The signals of the equation of motion start at zero.
  */
 static void begin_filters(sh_signals *signals, const sh_columns *columns, const sh_parameters *p,
@@ -191,17 +187,12 @@ void sh_signals_restore(sh_signals *signals, const sh_history *history)
     signals->history = *history;
 }
 
-void sh_signals_pass_start(sh_signals *signals, sh_real time)
-{
-    signals->history.starting -= time;
-}
-
 void sh_signals_rest(sh_signals *signals, int filtered)
 {
     sh_filters_rest(&signals->filters, SH_FILTERS + filtered);
 }
 
-/* The fourth difference of white noise of variance 1 has the variance 70; detail 4 */
+/* The fourth difference of white noise of variance 1 has the variance 70; section 5 */
 sh_real sh_signals_watch_theta(sh_signals *signals, const sh_parameters *p)
 {
     const sh_real *theta = signals->theta_before;

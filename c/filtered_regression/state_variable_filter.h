@@ -1,4 +1,4 @@
-/* State-variable filter (point 2): low pass and derivatives of a sampled signal, without numerical differentiation,
+/* State-variable filter (F2): low pass and derivatives of a sampled signal, without numerical differentiation,
  *
  *     H(s) = (w / (s + w))^3 ,  s H(s)  and  s^2 H(s) ,
  *

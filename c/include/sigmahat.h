@@ -93,8 +93,9 @@ enum {
     SH_DOUBT_INERTIA,            /* B_hat is beyond three std deviations of its prior */
     SH_DOUBT_NEGATIVE_STIFFNESS, /* sigma is below 0 */
     SH_DOUBT_CHANGE, /* stiffness or friction may have changed, the estimate does not follow yet */
-    SH_DOUBT_HELD_INPUTS /* samples were repeated; the library never reports it, as it cannot know.
-                            A caller that repeats samples may, as the FMUs do */
+    SH_DOUBT_HELD_INPUTS, /* samples were repeated; the library never reports it, as it cannot know.
+                             A caller that repeats samples may, as the FMUs do */
+    SH_DOUBT_OUTLIER      /* samples that no joint can give are being skipped */
 };
 
 /* Largest orders of the polynomials (18) and (19), in the deformation and in the set-point. These orders determine
@@ -358,7 +359,9 @@ void sh_estimator_start(sh_estimator *estimator, const sh_parameters *p, sh_esti
  *
  * Returns 0, or 1 if the tick is skipped: a measurement is not finite or beyond SH_LARGEST_MEASUREMENT, or the numbers
  * overflow. A skipped tick is counted and sets estimate->valid to 0. The other members of the estimate do not change.
- * The state changes only if the numbers overflow. After such a gap, the first good sample depends on the method:
+ * The state changes only if the numbers overflow. SH_METHOD_FILTERED_REGRESSION also skips a sample that no joint can
+ * give after the samples before it, for at most 0.12 s: estimate->doubt is then SH_DOUBT_OUTLIER, and estimate->confident
+ * is 0. After such a gap, the first good sample depends on the method:
  *
  * SH_METHOD_PAPER2011 advances its filters over the whole gap. If the gap is shorter than 2 / K_I, the residual
  * integrates over the gap as over one long sample. After a longer gap, the residual starts from its last value. With
@@ -385,6 +388,37 @@ int sh_estimator_tick(sh_estimator *estimator, const sh_parameters *p, const sh_
  */
 int sh_estimator_evaluate(const sh_estimator *estimator, const sh_parameters *p, sh_real phi,
                           sh_real setPoint, sh_point *point);
+
+/* Quantities that sh_estimator_covariance gives behind the stiffness, in this order. */
+enum {
+    SH_QUANTITY_B,             /* inertia of the motor [kg.m2] */
+    SH_QUANTITY_D_THETA,       /* viscous friction of the motor [N.m.s/rad] */
+    SH_QUANTITY_TAU_COULOMB,   /* Coulomb friction of the motor, on its axis [N.m] */
+    SH_QUANTITY_LOAD_FRICTION, /* friction per torque, of spring and motor [1] */
+    SH_QUANTITY_HYSTERESIS,    /* half the height of the hysteresis loop [N.m] */
+    SH_QUANTITY_LOST_TORQUE,   /* by which a dead zone reduces the torque of the spring beyond it:
+                                  its half width times the stiffness [N.m] */
+    SH_QUANTITIES
+};
+
+/* Gives the stiffness at points, and the quantities above, with their covariance, by the present estimate of
+ * SH_METHOD_FILTERED_REGRESSION. The estimator does not change. The covariance is that of the regression: it
+ * contains neither the gain of the torque nor, unlike sigma_std, errors of the deformation and of the place of a knee.
+ * A quantity that is taken as exact, or whose columns are not used, has the variance 0.
+ *
+ * p           parameters that pass sh_parameters_check; the fixed ones as they were at the start
+ * count       number of points, >= 0
+ * phi         deformations [rad] [size: count]
+ * setPoint    set-points [1] [size: count]
+ * values      the estimates [size: count + SH_QUANTITIES]
+ * per_gain    their change with the relative gain of the torque, d value / d gain [size: count + SH_QUANTITIES]
+ * covariance  by rows [size: (count + SH_QUANTITIES)^2]
+ *
+ * Returns 0, or 1 with another method, which sets nothing.
+ */
+int sh_estimator_covariance(const sh_estimator *estimator, const sh_parameters *p, int count,
+                            const sh_real *phi, const sh_real *setPoint, sh_real *values,
+                            sh_real *per_gain, sh_real *covariance);
 
 /* Checks a state from an external source, for example a file. Sizes, indices and flags of the state must be possible
  * after sh_estimator_start and sh_estimator_tick with these parameters. With such a state, a tick reads and writes no

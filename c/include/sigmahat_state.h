@@ -6,25 +6,29 @@
 #ifndef SIGMAHAT_STATE_H
 #define SIGMAHAT_STATE_H
 
-/* Method Paper2011: ud_factor.h, least_squares.h, kinematic_kalman.h, torque_residual.h, paper2011.c */
+/* Method Paper2011: least_squares.h, kinematic_kalman.h, torque_residual.h, paper2011.c */
 
 enum {
     SH_MAX_PARAMETERS = SH_MAX_BASIS,
-    SH_PANEL = 4, /* rows of U side by side in memory, see ud_factor.c */
-    SH_MAX_ROWS = ((SH_MAX_PARAMETERS + SH_PANEL - 1) / SH_PANEL * SH_PANEL),
-    SH_MAX_U = (SH_MAX_ROWS * SH_MAX_PARAMETERS - SH_MAX_ROWS * (SH_MAX_ROWS - SH_PANEL) / 2 +
-                SH_PANEL) /* one column more than U has: the loops read it, and do not use it */
+    SH_MAX_ROWS = (SH_MAX_PARAMETERS + 1) / 2 * 2, /* whole pairs, see least_squares.c */
+    SH_MAX_U = SH_MAX_ROWS * SH_MAX_ROWS / 2
 };
+
+/* What belongs to a column of U. D and f are neighbours, and the entries of two columns are not: a compiler would combine
+ * these to one vector. The update of a column would then wait for the next column.
+ */
+typedef struct {
+    sh_real D; /* entry of the diagonal, >= 0 */
+    sh_real f; /* entry of U' F, work */
+} sh_ud_column;
 
 /* Factors of a covariance P = U D U'. */
 typedef struct {
-    sh_real D[SH_MAX_ROWS]; /* diagonal, >= 0 */
-    sh_real U[SH_MAX_U];    /* unit upper triangular */
-    struct {
-        sh_real g[SH_MAX_ROWS], f[SH_MAX_ROWS], rho[SH_MAX_ROWS + 1];
-    } work;
-    sh_real least; /* not above any entry of D */
-    int size;      /* number of parameters, 1..SH_MAX_PARAMETERS */
+    sh_ud_column columns[SH_MAX_ROWS];
+    sh_real PF[SH_MAX_ROWS]; /* P F from before the update, work */
+    sh_real least;           /* not above any entry of D */
+    int size;                /* number of parameters, 1..SH_MAX_PARAMETERS */
+    sh_real U[SH_MAX_U];     /* unit upper triangular, see least_squares.c */
 } sh_ud_factor;
 
 /* The recursion. */
@@ -164,16 +168,22 @@ typedef struct {
     sh_real output[SH_FILTERS], first[SH_FILTERS], second[SH_FILTERS];
 } sh_filtered;
 
-/* Data of the past that a gap in the samples does not reset. A rejected sample does not change these data. */
+/* Data of the past. A gap in the samples resets only `settling`, and a rejected sample changes none of them. */
 typedef struct {
     sh_real stop[SH_WIDTHS];       /* states of the stop operators of hysteresis [rad] */
     sh_real phi, phi_min, phi_max; /* deformation: last, least and largest [rad] */
     sh_real resting;               /* samples since phi changed */
     sh_real unsure;                /* samples for which the sign of the velocity has been unknown */
     sh_real settling;              /* time until the filters have forgotten their start [s] */
-    sh_real starting; /* time left in which samples may show that the motor was moving [s] */
-    sh_real rough;    /* mean square of the noise of theta, from its fourth differences [rad2] */
+    sh_real rough; /* mean square of the noise of theta, from its fourth differences [rad2] */
 } sh_history;
+
+/* The first positions, which show whether the motor was at rest, rest.c. */
+typedef struct {
+    int taken, most; /* number of samples so far; number of samples before the test ends */
+    int next;        /* number of the next sample that is compared with that of half the number */
+    sh_real first, middle; /* position of the first sample, and of the last one compared [rad] */
+} sh_rest;
 
 /* Signals and their filters, which all have the same design. */
 typedef struct {
@@ -190,19 +200,46 @@ typedef struct {
     sh_history history;
 } sh_signals;
 
+/* Signals of the gate, whose samples are tested. */
+enum {
+    SH_GATE_THETA,
+    SH_GATE_PHI,       /* deformation */
+    SH_GATE_TORQUE,    /* of the motor, or measured, as the modality is */
+    SH_GATE_SET_POINT, /* less the center of its range; not without a polynomial in the set-point */
+    SH_GATE_SIGNALS
+};
+
+/* A signal of the gate, each number in the unit of the signal. */
+typedef struct {
+    sh_real last, step; /* last accepted sample, and its difference to the sample before it */
+    sh_real newest;     /* last sample, accepted or not */
+    sh_real peak;       /* largest innovation of late */
+    sh_real jump;       /* innovation with which the present refusals began */
+    int refused;        /* samples since the last accepted one */
+    /* Constant: smallest limit of the innovation at the start, and later; largest possible sample. */
+    sh_real scale, least, largest;
+} sh_gate_signal;
+
+/* What a joint can give, from its last samples, gate.c. */
+typedef struct {
+    int samples; /* since the start or a gap */
+    int skipped; /* ticks skipped, as the gate has seen them; the estimator skipped more if samples are missing */
+    sh_gate_signal signal[SH_GATE_SIGNALS];
+} sh_gate;
+
 /* What the next row needs of the estimate at the last tick. */
 typedef struct {
-    sh_real y;           /* y, less the error of the last row [N.m] */
+    sh_real y;           /* y of the last tick, less the error of the last row [N.m] */
     sh_real sigma;       /* stiffness [N.m/rad] */
     sh_real delay;       /* of the torque [s] */
     int stiffness_known; /* 1: columns that need the stiffness have an effect */
 } sh_feedback;
 
-/* Sums over the samples of the next row. */
+/* Means over the K samples of the next row: each sample taken so far has added 1/K of itself. */
 typedef struct {
     int samples;                    /* taken so far */
-    sh_real rough;                  /* sum of the noise of theta [rad2] */
-    sh_real moved;                  /* number of samples with which theta changed [1] */
+    sh_real rough;                  /* mean noise of theta [rad2] */
+    sh_real moved;                  /* share of the samples with which theta changed [1] */
     sh_filtered filtered;           /* of the signals */
     sh_real output[SH_MAX_COLUMNS]; /* outputs of the filters of the columns */
 } sh_mean;
@@ -232,8 +269,16 @@ typedef struct {
     sh_real weight;               /* weight of the data, 1 / variance factor of the misfit [1] */
     sh_real surplus;              /* information about b that is rounding, still contained [1] */
     sh_real removed;              /* removed so far [1] */
-    sh_real spread;               /* variance of both, as it acts on the estimate of b [1] */
+    sh_real spread;               /* variance of surplus and removed, as it acts on b [1] */
 } sh_posterior;
+
+/* The estimate, coefficients.c. */
+typedef struct {
+    sh_real beta[SH_MAX_COLUMNS];     /* by column, in std deviations of the priors */
+    sh_real per_gain[SH_MAX_COLUMNS]; /* change of beta with the relative gain of the torque */
+    sh_real viscous, inertia;         /* relative errors of motor.D_theta and motor.B [1] */
+    sh_real viscous_std;              /* std deviation of `viscous` at the last refit [1] */
+} sh_coefficients;
 
 /* A row that a later step takes, and its weight, which is negative for process noise; 0: there is none. */
 typedef struct {
@@ -252,6 +297,7 @@ typedef struct {
 /* The present block of rows, block.c. */
 typedef struct {
     sh_real length;                /* rows of a block */
+    sh_real duration;              /* of a block [s] */
     sh_real energy, energy_second; /* share of white noise that H, and s^2 H [1/s4], leave in a
                                       block */
     sh_real rows;                  /* so far */
@@ -262,6 +308,14 @@ typedef struct {
     sh_real rounding;    /* sum of mean squares of the rounding of theta [rad2] */
 } sh_block;
 
+/* The mean row of the last full block, and what it counts for. */
+typedef struct {
+    sh_real x[SH_MAX_ROW];
+    sh_real w;        /* weight, 1 / variance [1/(N.m)2] */
+    sh_real count;    /* number of blocks without lasting errors with the same information, <= 1 */
+    sh_real duration; /* of the block, times `count` [s] */
+} sh_block_mean;
+
 /* Hypotheses about the joint, which predict each block, bank.c. */
 typedef struct {
     sh_information constant;                     /* prior and blocks, if the joint is as before */
@@ -271,6 +325,7 @@ typedef struct {
                                                     predicted it: squares over variances */
     sh_real prior; /* share of the prior that is left in the first two, 0..1 */
     sh_real count; /* effective number of blocks [1] */
+    sh_real past;  /* number of blocks so far, also of forgotten ones, as far as it matters [1] */
     sh_real level; /* mean square of a block's error over its variance */
     /* Another spring: */
     sh_real blocks;   /* since the hypothesis began */
@@ -286,13 +341,10 @@ typedef struct {
 
 /* How far the blocks contradict the model, misfit.c. */
 typedef struct {
-    sh_information recent;   /* prior and the last blocks */
-    sh_real recent_count;    /* effective number of blocks in it [1] */
-    sh_real recent_square;   /* their reduced chi-square, if it is beyond chance; else 0 */
     sh_real square;          /* reduced chi-square of the blocks [1] */
     sh_real variance_factor; /* factor of the variances, kappa^2 [1] */
     sh_real usual, judged;   /* usual misfit: mean, and of how many blocks [1] */
-    sh_real duration;        /* time of counted blocks since the last refit that was no trial [s] */
+    sh_real duration; /* of the blocks since data were last forgotten, or might have been [s] */
 } sh_misfit;
 
 /* The next posterior while it is computed from all data, refit.c. */
@@ -301,8 +353,8 @@ typedef struct {
     int unread;     /* rows of the data, the first ones, that have not been read */
     int is_open;    /* 1: the posterior takes new rows; 0: it is in use, or a trial that is over */
     sh_sample rest; /* what the rows of the data that have not been read left of the newest row */
-    int trial; /* group that the refit tries, in its last steps of the next one; 0: none, it changes
-                  the estimate */
+    int trial; /* group that the refit tries, behind end_refit() that of the next refit; 0: none, the
+                  refit changes the estimate */
     int last_trial;      /* group that was tried last */
     int used[SH_GROUPS]; /* 1: the group is used */
     sh_real pause;       /* since the end of the last refit [s] */
@@ -310,40 +362,41 @@ typedef struct {
 
 /* What the tick does next, schedule.c. */
 typedef struct {
-    int tick;     /* ticks since the row, up to the number in which its jobs are done */
-    int job;      /* next job of the refit behind the rows of the data */
-    sh_real time; /* since the last refit that was no trial [s] */
+    int tick;        /* ticks since the row, up to the number in which its jobs are done */
+    int block_job;   /* next job of the last full block */
+    int refit_job;   /* next job of the refit behind the rows of the data */
+    int interrupted; /* 1: there is a gap behind the row, which therefore belongs to no block */
+    sh_real time;    /* since forgetting and drift were last applied [s] */
 } sh_schedule;
 
 /* The method: its parts, and what the tick itself knows. */
 typedef struct {
     int modality; /* of the last good sample */
     sh_columns columns;
+    sh_gate gate;
     sh_signals signals;
+    sh_rest rest;
     sh_mean mean;
     sh_row row;
     sh_samples samples;
     sh_posterior posterior; /* the estimate */
     sh_refit refit;
     sh_block block;
+    sh_block_mean block_mean;
     sh_bank bank;
     sh_misfit misfit;
     sh_schedule schedule;
     sh_feedback feedback;
-    /* The last estimate: */
-    sh_real beta[SH_MAX_COLUMNS];     /* estimate by column, in std deviations of the priors */
-    sh_real per_gain[SH_MAX_COLUMNS]; /* change of beta with the relative gain of the torque */
-    sh_variances variances;           /* of the torque of the spring [(N.m)2], and of the stiffness
-                                         [(N.m/rad)2], if the gain is right */
-    sh_real viscous, inertia;         /* relative errors of motor.D_theta and motor.B [1] */
-    sh_real friction_std; /* std deviation of D_theta's relative error at the last refit [1] */
-    sh_real change_age;   /* time since the last change of the spring [s], -1 if there was none */
+    sh_coefficients coefficients; /* of the posterior */
+    sh_variances variances;       /* of the torque of the spring [(N.m)2], and of the stiffness
+                               [(N.m/rad)2], if the gain is right */
+    int change_age; /* ticks since the last change of the spring, -1 if there was none */
 } sh_regression_state;
 
 /* The estimator. */
 struct sh_estimator {
-    int started;     /* 1: there was a good sample */
-    sh_real skipped; /* ticks skipped since the last good sample */
+    int started; /* 1: there was a good sample */
+    int skipped; /* ticks skipped since the last good sample */
     union {
         sh_paper2011_state paper2011;
         sh_regression_state regression;

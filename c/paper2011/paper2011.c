@@ -6,7 +6,6 @@
 #include "real_math.h"
 #include "torque_basis.h"
 #include "torque_residual.h"
-#include "ud_factor.h"
 
 static int check_paper2011(const sh_parameters *p, sh_violation *violation)
 {
@@ -41,7 +40,7 @@ static void evaluate_regressors(const sh_paper2011_state *state, const sh_parame
 
     sh_scalar_products(state->rls.eta, F, dF, p->rls.n * p->rls.m, &point->tau_e, &point->sigma);
     point->tau_e_std = sh_std_deviation(unit * variance);
-    point->sigma_std = sh_std_deviation(unit * sh_ud_factor_variance(&state->rls.P, dF));
+    point->sigma_std = sh_std_deviation(unit * sh_least_squares_variance(&state->rls, dF));
     point->sigma_per_gain = 1;
 }
 
@@ -52,7 +51,7 @@ static void evaluate_paper2011(const sh_estimator *estimator, const sh_parameter
     sh_real F[SH_MAX_PARAMETERS] = {0}, dF[SH_MAX_PARAMETERS] = {0};
 
     sh_torque_basis(p->rls.symmetric, p->rls.n, p->rls.m, set_point, phi, F, dF);
-    evaluate_regressors(state, p, F, dF, sh_ud_factor_variance(&state->rls.P, F), point);
+    evaluate_regressors(state, p, F, dF, sh_least_squares_variance(&state->rls, F), point);
 }
 
 /* Sets the outputs that are computed from the recursion, except torque and stiffness. */
@@ -132,7 +131,7 @@ static sh_real track(sh_paper2011_filters *state, const sh_parameters *p, const 
 static int tick_paper2011(sh_estimator *estimator, const sh_parameters *p, const sh_measurement *z,
                           sh_real set_point, sh_estimate *estimate)
 {
-    const sh_real dt = estimator->started ? p->samplePeriod * (1 + estimator->skipped) : 0;
+    const sh_real dt = estimator->started ? p->samplePeriod * (sh_real)(1 + estimator->skipped) : 0;
     sh_paper2011_state *const state = &estimator->method.paper2011;
     const sh_paper2011_filters before = state->filters;
     const sh_real tau_e_residual = track(&state->filters, p, z, dt);

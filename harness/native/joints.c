@@ -63,6 +63,14 @@ void sh_joint_evaluate(const sh_joint *joint, size_t count, const double *phi,
     }
 }
 
+int sh_joint_covariance(const sh_joint *joint, size_t count, const double *phi,
+                        const double *set_point, double *values, double *per_gain,
+                        double *covariance)
+{
+    return sh_estimator_covariance(&joint->estimator, &joint->parameters, (int)count, phi,
+                                   set_point, values, per_gain, covariance);
+}
+
 /* Writes the outputs of the last tick to place k of their arrays. */
 static void record(const sh_joint *joint, const sh_joint_output *outputs, size_t count, size_t k)
 {

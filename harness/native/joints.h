@@ -46,6 +46,11 @@ SH_EXPORT void sh_joint_start(sh_joint *joint);
 SH_EXPORT void sh_joint_evaluate(const sh_joint *joint, size_t count, const double *phi,
                                  const double *set_point, sh_point *points);
 
+/* Gives the stiffness at `count` points and the quantities SH_QUANTITY_*, as sh_estimator_covariance. */
+SH_EXPORT int sh_joint_covariance(const sh_joint *joint, size_t count, const double *phi,
+                                  const double *set_point, double *values, double *per_gain,
+                                  double *covariance);
+
 /* Size of the saved bytes of so many estimators [bytes]. */
 SH_EXPORT size_t sh_joints_saved_size(size_t joints);
 

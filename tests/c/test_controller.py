@@ -44,8 +44,8 @@ def cost(tree: Path) -> str:
 def test_a_processor_computes_what_the_host_computes(
     target: Target, real: str, configuration: str, build: Path, folder: Path, tmp_path: Path
 ) -> None:
-    z = table1_recording().measurements()[:1300].copy()
-    z[650:670, 1] = np.nan  # lost
+    z = table1_recording().measurements()[:800].copy()
+    z[550:570, 1] = np.nan  # lost
     z[433, 0] = 1e20  # too large
     estimate = type_of_estimate(build, real)
     here, there = (
@@ -110,14 +110,14 @@ def test_memory_and_stack_are_within_their_limits(name: str, real: str, folder: 
     ("n", "m", "columns", "row"),
     [
         (6, 3, 1, "Paper2011"),
-        (2, 1, 21, "FilteredRegression, all columns"),
+        pytest.param(2, 1, 21, "FilteredRegression, all columns", marks=pytest.mark.complete),
         (3, 1, 6, "FilteredRegression, few columns"),
     ],
 )
 def test_smaller_sizes_cost_what_the_page_says(
     n: int, m: int, columns: int, row: str, folder: Path
 ) -> None:
-    """The table of seven joints in docs/controller.md. Another compiler may differ a little.
+    """The table of seven joints in docs/controller-cost.md. Another compiler may differ a little.
 
     The library rejects parameters that need more memory than it has.
     """
@@ -127,7 +127,7 @@ def test_smaller_sizes_cost_what_the_page_says(
     counted = re.search(rf"{row}: (\d+) instructions per tick, at most (\d+)", text)
     memory = re.search(r"RAM: (\d+) bytes", text)
     assert counted and memory, text
-    page = (REPOSITORY / "docs" / "controller.md").read_text(encoding="utf-8")
+    page = (REPOSITORY / "docs" / "controller-cost.md").read_text(encoding="utf-8")
     (line,) = re.findall(rf"^\| {row} \| {n} x {m}, {columns} \|(.*)\|$", page, re.M)
     cells = [float(cell.strip(" %")) for cell in line.split("|")]
     mean, longest, joints = int(counted[1]), int(counted[2]), 7

@@ -23,7 +23,7 @@ PROGRAM = REPOSITORY / "tests" / "replay" / "replay.c"
 PROJECT = """
 cmake_minimum_required(VERSION 3.25)
 project(consumer LANGUAGES C)
-find_package(sigmahat 0.1 REQUIRED)
+find_package(sigmahat 1.0 REQUIRED)
 add_executable(consumer replay.c)
 target_link_libraries(consumer PRIVATE sigmahat::sigmahat)
 """
@@ -126,6 +126,7 @@ def conan(build: Path, tmp_path_factory: pytest.TempPathFactory) -> Callable[...
     return partial(run, program, environment=places)
 
 
+@pytest.mark.complete
 @pytest.mark.parametrize(
     ("options", "number", "least", "most"),
     [

@@ -74,7 +74,7 @@ ITEMS = {
     "deformation": "Raw Filtered",
     "rls.kind": "Enhanced Standard ConstantFactor",
     "doubt": "None NoClaim NotExcited Misfit OutOfRange FrictionOutsidePrior InertiaOutsidePrior"
-    " NegativeStiffness Change HeldInputs",
+    " NegativeStiffness Change HeldInputs Outlier",
 }
 
 

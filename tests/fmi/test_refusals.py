@@ -139,10 +139,10 @@ def test_a_deformation_far_beyond_its_range_is_reported_once(method: int, fmi: F
             fmu.messages.clear()
             fmu.initialise({"method": method, "range.phi": 0.1})
             statuses = []
-            for k, phi in enumerate((0.0, 0.2, -0.21, 0.3, 0.0, 0.3)):
+            for k, phi in enumerate((0.0, -0.07, -0.14, -0.21, -0.28, -0.35)):
                 fmu.set_all({"q": phi})
                 statuses.append(fmu.step(k * 1e-3, 1e-3))
-            assert statuses == [OK, OK, WARNING if method == 2 else OK, OK, OK, OK]
+            assert statuses == [OK, OK, OK, WARNING if method == 2 else OK, OK, OK]
             warnings = [message for status, _, message in fmu.messages if status == WARNING]
             assert len(warnings) == (method == 2)
             assert all("range.phi = 0.1" in text and "-0.21" in text for text in warnings)

@@ -210,6 +210,8 @@ def test_held_inputs_are_a_doubt_until_a_second_of_single_ticks_has_passed(
     fmi: Fmi, name: str, side: str
 ) -> None:
     start = {**MOVING, "limit.relative_std": 1e12, "regression.memory": 0.0, "modality": SENSOR}
+    # With coarse encoders, a sample that is repeated once is no outlier.
+    start |= {"encoder.theta": 1000.0, "encoder.q": 1000.0}
     with fmi(name).initialise(start) as fmu:
         outputs = [n for n in names(fmu, "output") if n.partition("_")[0] != "doubt"]
         for k in range(1000):

@@ -141,17 +141,18 @@ def type_of_estimate(build: Path, real: str) -> np.dtype[Any]:
 
 
 def covariance(P: Any) -> Array:
-    """P = U D U' of a `sh_ud_factor` [size: P.size x P.size]. ud_factor.c says where U is."""
-    size, U = P.size, np.zeros((P.size, P.size))
-    for i in range(size):
-        row = i % 4
-        first = i - row
-        for j in range(i, size):
-            at = first * size - first * (first - 4) // 2 + (j - first) * 4 + row
-            U[i, j] = P.U[at]
-    D = np.array(list(P.D)[:size])
-    product: Array = (U * D) @ U.T
+    """P = U D U' of a `sh_ud_factor` [size: P.size x P.size]. least_squares.c says where U is."""
+    U = np.eye(P.size)
+    for j in range(P.size):
+        first = j * j // 2
+        U[:j, j] = list(P.U[first : first + j])
+    product: Array = (U * diagonal(P)) @ U.T
     return product
+
+
+def diagonal(P: Any) -> Array:
+    """D of a `sh_ud_factor` [size: P.size]."""
+    return np.array([column.D for column in P.columns[0 : P.size]])
 
 
 class Estimator:
@@ -181,7 +182,9 @@ class Estimator:
         state = ffi.new("sh_estimator *", self.state[0])
         if self.parameters.method == self.library.lib.SH_METHOD_PAPER2011:
             P = state.method.paper2011.rls.P
-            ffi.memmove(ffi.addressof(P, "work"), bytes(ffi.sizeof(P.work)), ffi.sizeof(P.work))
+            for column in P.columns:
+                column.f = 0.0
+            ffi.memmove(P.PF, bytes(ffi.sizeof(P.PF)), ffi.sizeof(P.PF))
         return bytes(ffi.buffer(state))
 
     def run(self, measurements: Array) -> NDArray[np.void]:

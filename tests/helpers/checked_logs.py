@@ -155,6 +155,22 @@ def log_under_gravity(change: float) -> Mapping[str, Array]:
     return as_recorded({"t": t, "theta": theta, "q": theta - load / K, "tau": tau + noise})
 
 
+def log_of_a_hardening_spring(zero: float) -> Mapping[str, Array]:
+    """The knee under a weight that loads it to one side, in slow motion, in closed form. At 20 mrad
+    the secant stiffness has doubled.
+
+    zero  deformation at which the spring has no torque [rad]
+    """
+    t, theta, velocity, acceleration = _sines(0.4)
+    load = 20.0 + 12.0 * np.sin(theta) + acceleration  # torque of a weight and 1 kg.m2 [N.m]
+    deformations = np.linspace(-0.1, 0.1, 20001)
+    torques = KNEE["spring.k_1"] * deformations * (1.0 + (deformations / 0.02) ** 2)
+    q = theta + zero + np.interp(-load, torques, deformations)
+    tau = _motor_torque(velocity, acceleration) + load / GEAR
+    noise = 1e-3 * np.random.default_rng(1).standard_normal(len(t))
+    return as_recorded({"t": t, "theta": theta, "q": q, "tau": tau + noise})
+
+
 def stiff_log() -> dict[str, Array]:
     """The knee with a spring that is rigid, in slow motion without any load, in closed form."""
     t, theta, velocity, acceleration = _sines(0.3)
@@ -162,3 +178,24 @@ def stiff_log() -> dict[str, Array]:
     q = theta + 3e-5 * noise[0]
     tau = _motor_torque(velocity, acceleration) + 1e-4 * noise[1]
     return {"t": t, "theta": theta, "q": q, "tau": tau}
+
+
+def log_with_rests() -> Mapping[str, Array]:
+    """The knee with a weight, between poses, in closed form: a second of motion and one of rest.
+
+    At rest, static friction holds up to 0.8 times the Coulomb friction, drawn for each rest.
+    """
+    T, rng = 1e-3, np.random.default_rng(2)
+    t = times(T, 30.0)
+    poses = np.concatenate([[0.0], rng.uniform(-0.6, 0.6, 16)])
+    k, s = (t // 2.0).astype(int), np.minimum(t % 2.0, 1.0)
+    step = np.diff(poses)[k]
+    theta = poses[k] + step * s**3 * (10 - 15 * s + 6 * s**2)
+    velocity = step * 30 * s**2 * (1 - s) ** 2
+    acceleration = step * 60 * s * (1 - s) * (1 - 2 * s)
+    load = 12.0 * np.cos(theta) + acceleration  # torque of a weight and 1 kg.m2 [N.m]
+    held = KNEE["motor.tau_coulomb"] * rng.uniform(-0.8, 0.8, 16)[k] * (t % 2.0 > 1.0)
+    tau = _motor_torque(velocity, acceleration) + load / GEAR + held
+    noise = 1e-3 * rng.standard_normal(len(t))
+    q = theta - load / KNEE["spring.k_1"]
+    return as_recorded({"t": t, "theta": theta, "q": q, "tau": tau + noise})

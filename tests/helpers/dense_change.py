@@ -22,9 +22,10 @@ def squared_error(sums: "Information", row: "Long", variance: float) -> float:
 class Change:
     """Whether the spring, or friction, has changed: never in the runs of the oracle."""
 
-    def __init__(self, sums: "Information", spring: int, friction: slice) -> None:
-        """spring, friction  columns: the number of the first ones, and the others"""
+    def __init__(self, sums: "Information", spring: int, bias: int | None, friction: slice) -> None:
+        """spring, bias, friction  columns: the number of the first ones, and the others"""
         self.changed, self.spring, self.friction = deepcopy(sums), spring, friction
+        self.bias = bias
         self.level, self.usual_misfit, self.judged = 1.0, 1.0, 0
         self.evidence, self.blocks = 0.0, 80
         self.friction_blocks, self.preference = 0, 0.0
@@ -32,12 +33,22 @@ class Change:
         self.was_tested = False  # whether other friction has ever been a hypothesis
         self.before = self.of_spring = self.of_friction = 0.0  # squared errors
 
-    def begin(self, blocks: "Blocks", friction_drifts: bool) -> None:
+    def begin(self, blocks: "Blocks", friction_drifts: bool, beta: "Long") -> None:
         self.changed = deepcopy(blocks.walking if friction_drifts else blocks.all)
         self.changed.restart(self.spring, blocks.prior)
+        if self.bias is not None:
+            unit = np.eye(self.changed.size, dtype=np.longdouble)[self.bias]
+            self.changed.walk(unit, float(beta[self.bias] ** 2))
         self.evidence, self.blocks = 0.0, 0
 
-    def take(self, row: "Long", variance: float, blocks: "Blocks", friction_drifts: bool) -> None:
+    def take(
+        self,
+        row: "Long",
+        variance: float,
+        blocks: "Blocks",
+        friction_drifts: bool,
+        beta: "Long",
+    ) -> None:
         """Updates this hypothesis by a block that the other hypotheses have not taken yet."""
         before = squared_error(blocks.all, row, variance)
         self.of_friction = squared_error(blocks.walking, row, variance)
@@ -46,17 +57,19 @@ class Change:
         if self.blocks > 0:
             self.changed.take(row, 1 / variance)
         if self.of_spring > 12.5 * self.level and self.evidence <= 50:
-            self.begin(blocks, friction_drifts)
+            self.begin(blocks, friction_drifts, beta)
             self.of_spring = 0.0
 
-    def judge(self, misfit: float, blocks: "Blocks", friction_drifts: bool, measured: bool) -> bool:
-        """Returns whether the hypothesis of other friction begins."""
+    def judge(
+        self, misfit: float, blocks: "Blocks", friction_drifts: bool, measured: bool, beta: "Long"
+    ) -> bool:
+        """Returns whether the hypothesis of other friction begins: friction then drifts no more."""
         level = self.level
         self.judged = min(self.judged + 1, 400)
         self.level = max(1, level + (min(self.before, 9 * level) - level) / self.judged)
         most = min(misfit, 1.7 * self.usual_misfit)
         self.usual_misfit += (most - self.usual_misfit) / self.judged
-        if blocks.count < 40:
+        if blocks.past < 40:
             return False
         if self.friction_blocks > 1 and self.blocks > 0:
             self.preference += min(self.of_friction / level, 50) - min(self.of_spring / level, 50)
@@ -70,8 +83,10 @@ class Change:
             if self.friction_blocks > 0 and self.preference >= -25:
                 blocks.walking = deepcopy(blocks.all)
             self.friction_blocks = self.left = 0
-            self.begin(blocks, friction_drifts)
-        elif self.evidence > 20 and self.friction_blocks == 0 and not (friction_drifts or measured):
+            self.begin(blocks, friction_drifts, beta)
+        elif self.evidence > 20 and self.friction_blocks == 0 and not measured:
+            if friction_drifts:
+                blocks.all = deepcopy(blocks.walking)
             columns = range(self.friction.start, self.friction.stop)
             for unit in np.eye(blocks.walking.size)[columns]:
                 blocks.walking.walk(unit.astype(np.longdouble), 1.0)

@@ -15,6 +15,7 @@ from scipy.signal import lfilter
 
 from c_library import Array, Library
 from dense_change import Change
+from dense_gate import accepted
 from dense_signals import (
     CURVE,
     GAPS,
@@ -42,14 +43,13 @@ START: Parameters = {  # start values, with rls.n for the AwAS and an unknown in
     **{"method": 2, "torque.held": 0, "rls.n": 3, "range.phi": 0.3, "range.setPoint": 100.0},
     **{"range.knee": 0.0, "range.knee_2": 0.0, "range.setPoint_center": 0.0},
     **{"regression.bandwidth": 350.0, "regression.slow": 0.05, "regression.drift": 0.0},
-    **{"regression.memory": 20.0, "prior.tau_e": 45.0, "prior.nominal": 0.0, "prior.D_theta": 0.2},
+    **{"regression.memory": 7.0, "prior.tau_e": 45.0, "prior.nominal": 0.0, "prior.D_theta": 0.2},
     **{"prior.B": 0.1, "prior.tau_coulomb": 0.02, "prior.torque_gain": 0.02, "prior.bias": 0.05},
     **{"prior.damping": 7.5e-3, "prior.load_friction": 0.1, "prior.eccentric": 5e-4},
     **{"prior.delay": 2e-3, "prior.reversal": 2e-3, "prior.power": 1.0, "prior.gap": 0.02},
     **{"prior.hysteresis": 0.01, "prior.eccentric_motor": 1e-4},
 }
 FRICTION = ("LOAD", "DRIVE", "VISCOUS", "COULOMB")
-EQUATION = ("POWER", "NOMINAL", "VISCOUS", "COULOMB", "INERTIA")
 
 
 def identity(n: int) -> Long:
@@ -206,8 +206,8 @@ class Blocks:
         self.energy, self.energy_second = (float(np.sum(f**2) / np.sum(h**2)) for f in filtered)
         self.all, self.walking = (Information(n, 1.0, LEAST) for _ in range(2))
         self.prior = 1.0  # share of it that is left in both
-        self.recent = Information(n, 1.0)
-        self.count = self.recent_count = self.gained = 0.0
+        self.count = self.gained = 0.0
+        self.past = 0.0  # as count, with the forgotten ones
         self.rows: list[tuple[Long, float, float, float]] = []  # row, weight, factor, roughness
 
 
@@ -221,22 +221,33 @@ class Oracle:
     def __init__(self, c: Library, p: Parameters, z: Array, modality: Array) -> None:
         self.c, self.p, self.z, self.modality = c, p, z, modality
         self.T, self.w, self.K = p["samplePeriod"], bandwidth(p), decimation(p)
-        self.runs = self.find_runs(np.all(np.isfinite(z), axis=1))
+        self.good = accepted(p, z, modality)
+        self.runs = self.find_runs(self.good)
         self.inputs = Inputs(p, np.nan_to_num(z, posinf=0.0, neginf=0.0), self.runs)
         self.columns = self.inputs.columns
-        self.n = n = len(self.columns)
+        self.n = len(self.columns)
         self.kinds = [kind for kind, _, _ in self.columns]
         self.of_spring = np.array([kind in TORQUE for kind in self.kinds])
         self.groups = [GROUPS.get(kind, 0) for kind in self.kinds]
         self.counts = np.array([resolution(p[f"encoder.{name}"]) for name in ("theta", "q")])
+        self.phi_min, self.phi_max = math.inf, -math.inf
+        self.resting = self.unsure = 0
+        self.settling, self.is_start = 0.0, True
+        self.rough = 0.0
+        self.out: dict[str, list[Any]] = defaultdict(list)
+        self.set_noise()
+        self.start_learning()
+
+    def start_learning(self) -> None:
+        """All that a row changes."""
+        n = self.n
         self.data = Information(n, LEAST)
         self.used = [1, 0, 0, 0, 0, 0, 0]
-        self.phi_min, self.phi_max = math.inf, -math.inf
         self.live = self.posterior(0, 1.0)
         self.blocks = Blocks(n, self.w, self.T, self.K)
         self.full = np.zeros(0, np.longdouble), 1.0, 0.0  # mean, variance and count of a full block
         self.q = self.factor = 1.0
-        self.surplus = self.spread = self.weights = self.recent_q = 0.0
+        self.surplus = self.spread = self.weights = 0.0
         self.of_drive = np.zeros(2)
         self.trial = self.last_trial = 0
         self.since = self.pause = self.epsilon = self.rho = 0.0
@@ -247,16 +258,15 @@ class Oracle:
         self.new_variances = False  # whether this tick computes the variances
         self.set_beta()
         self.sigma = self.y = self.delay = 0.0
-        self.resting = self.unsure = 0
-        self.settling, self.starting = 0.0, 12 / self.w
-        self.rough = 0.0
+        self.interrupted = False
         self.once_used: set[int] = set()  # groups that a trial has shown to be needed
-        self.changes = 0  # passes in which the recent data agreed by themselves
         self.change = self.hypotheses()
-        self.out: dict[str, list[Any]] = defaultdict(list)
-        self.set_noise()
         self.passes = self.make_passes()
         next(self.passes)
+
+    def learn_anew(self) -> None:
+        self.is_start = False
+        self.start_learning()
 
     def find_runs(self, good: NDArray[np.bool_]) -> list[slice]:
         """Good samples in sequence with one modality."""
@@ -281,7 +291,8 @@ class Oracle:
         friction = [i for i, kind in enumerate(self.kinds) if kind in FRICTION]
         first = friction[0] if friction else 0
         springs = int(np.count_nonzero(self.of_spring))
-        return Change(self.blocks.recent, springs, slice(first, first + len(friction)))
+        bias = self.kinds.index("BIAS") if "BIAS" in self.kinds else None
+        return Change(self.blocks.all, springs, bias, slice(first, first + len(friction)))
 
     # Columns of a posterior
 
@@ -318,7 +329,7 @@ class Oracle:
                 yield
             use = (self.end_build, self.use_build, self.set_beta, self.renew_variances)
             trial = (self.end_trial, *[lambda: None] * 3)
-            judge = (self.judge_recent, self.judge, self.plan)
+            judge = (self.judge, self.plan)
             for step in (*(trial if self.trial else use), *judge):
                 step()
                 yield
@@ -333,7 +344,8 @@ class Oracle:
 
     def shortest_pause(self) -> float:
         count = self.blocks.count
-        return 0.2 if count < 15 else 0.0101 * 0.05 * count
+        block = self.blocks.length * self.K * self.T
+        return 0.2 if count < 15 else 0.0101 * block * count
 
     def end_build(self) -> None:
         """Removes the noise of a new posterior, which takes more rows before its first use."""
@@ -370,30 +382,22 @@ class Oracle:
         return float((right @ inverse(A) @ right - log_determinant) / 2)
 
     def has_many_blocks(self) -> bool:
-        return self.blocks.count >= 20 and len(self.live.chosen) < self.blocks.count
-
-    def judge_recent(self) -> None:
-        """Misfit of the recent blocks, if the misfit is not due to chance."""
-        blocks, recent, self.recent_q = self.blocks, self.blocks.recent_count, 0.0
-        if recent >= 20 and not self.friction_drifts and self.p["regression.drift"] <= 0:
-            squares = blocks.recent.squares(self.beta) - float(self.beta @ self.beta)
-            self.recent_q = squares / recent if squares > threshold(recent) else 0.0
+        return len(self.live.chosen) < self.blocks.count
 
     def judge(self) -> None:
-        """The misfit of all blocks, or of the recent ones."""
+        """The misfit of the blocks."""
         blocks, N = self.blocks, self.blocks.count
-        if N < 4:
+        if N <= 0:
             return
         sums = blocks.walking if self.friction_drifts else blocks.all
         squares = sums.squares(self.beta) - blocks.prior * float(self.beta @ self.beta)
-        whole = squares / (N - len(self.live.chosen) / 2 if self.has_many_blocks() else N)
-        self.q = max(whole, self.recent_q)
+        self.q = squares / (N - len(self.live.chosen) / 2 if self.has_many_blocks() else N)
         self.factor = 1.0
         if self.p["regression.memory"] > 0:
             self.factor = max(1.0, self.q)
             t = threshold(N) / N
-            if whole > t:
-                self.factor = max(self.factor, 1 + (whole - t) * max(1, N / 5))
+            if self.q > t:
+                self.factor = max(self.factor, 1 + (self.q - t) * max(1, N / 5))
 
     def plan(self) -> None:
         """After each pass, the next group is tried if the group has columns."""
@@ -432,16 +436,10 @@ class Oracle:
     def forget(self, time: float) -> None:
         blocks, memory, drift = self.blocks, self.p["regression.memory"], self.p["regression.drift"]
         gained, blocks.gained = blocks.gained, 0.0
-        keep = math.exp(-10 * gained / memory) if memory else 1.0
-        blocks.recent.fade(keep)
-        blocks.recent_count *= keep
         everything = (self.data, blocks.all, blocks.walking)
         if self.factor > 1.5 and self.has_many_blocks():
-            N = blocks.recent_count
-            has_changed = N > 20 and blocks.recent.rest < threshold(N)
-            self.changes += has_changed
             sudden = min(math.sqrt(max(1.0, self.q)) / self.change.usual_misfit / 3, 10.0)
-            keep = math.exp(-gained * max(sudden, 5.0 if has_changed else 1.0) / memory)
+            keep = math.exp(-gained * max(sudden, 1.0) / memory)
             for sums in everything:
                 sums.fade(keep)
             blocks.prior *= keep
@@ -512,6 +510,7 @@ class Oracle:
             self.build.surplus += N * self.build.weight
             self.live.remove(N * self.live.weight)
         self.steps, self.tick = self.make_steps(row, R, last, mean_rough, filtered.measured), 0
+        self.interrupted = False
 
     def make_steps(
         self, row: Long, R: float, last: float, rough: float, measured: bool
@@ -532,11 +531,12 @@ class Oracle:
         was_full = len(blocks.rows) == blocks.length
         if was_full:
             self.end_block(*self.full, measured)
-        blocks.rows.append((row, 1 / R, last, rough))
+        if not self.interrupted:
+            blocks.rows.append((row, 1 / R, last, rough))
         is_full = len(blocks.rows) == blocks.length
         if is_full:
             self.full = mean, variance, _ = self.full_block(measured)
-            self.change.take(mean, variance, blocks, self.friction_drifts)
+            self.change.take(mean, variance, blocks, self.friction_drifts, self.beta)
         elif not was_full:
             self.pass_on(0)
         yield
@@ -560,14 +560,14 @@ class Oracle:
     def end_block(self, mean: Long, variance: float, count: float, measured: bool) -> None:
         """After the row behind the block."""
         blocks = self.blocks
-        blocks.recent.take(mean, 1 / variance)
         blocks.count += count
-        blocks.recent_count += count
+        blocks.past += count
         blocks.gained += count * blocks.length * self.K * self.T
         if self.p["regression.memory"] > 0:
             misfit = math.sqrt(max(1.0, self.q))
-            if self.change.judge(misfit, blocks, self.friction_drifts, measured):
+            if self.change.judge(misfit, blocks, self.friction_drifts, measured, self.beta):
                 self.waiting = None  # a sample of the sums as they were
+                self.friction_drifts = False
         blocks.rows.clear()
 
     def follow(self) -> None:
@@ -603,23 +603,24 @@ class Oracle:
         self.of_drive += of_drive.astype(float)
         self.build.of_drive += of_drive.astype(float) * self.build.weight
 
-    def was_at_rest(self, filtered: Filtered, at: int, row: Long) -> bool:
-        if filtered.measured or self.starting <= 0:
-            return True
-        self.starting -= self.K * self.T
-        # Columns of effects outside the equation of motion must not hide a slow motion.
-        chosen = self.live.chosen
-        x = np.where([self.kinds[i] in EQUATION for i in chosen], row[chosen], 0)
-        variance = self.torque_noise + self.inertial * self.counts[0] ** 2 / 12
-        variance += self.friction_variance(filtered.unknown_f[at]) + x @ self.P @ x
-        if self.error(row) ** 2 <= 25 * variance:
-            return True
-        self.wait_until_settled()
-        return False
+    def was_moving(self, theta: Array) -> bool:
+        """Whether the positions since the first sample exclude that the motor was at rest then.
+
+        From rest, a motor covers at most a quarter of its way in the first half of the time.
+        """
+        k = len(theta) - 1
+        if k < 2 or k & (k - 1):
+            return False
+        half, way = np.abs(theta[[k // 2, k]] - theta[0])
+        resolution = max(self.counts[0], 5 * math.sqrt(self.rough))
+        if half < 0.3 * way - resolution:
+            self.is_start = False
+        return bool(half > 0.3 * way + resolution)
 
     def wait_until_settled(self) -> None:
         """A block that is not full would contain rows from both sides of the gap."""
-        self.starting, self.settling = 0.0, 12 / self.w
+        self.settling = 12 / self.w
+        self.interrupted = True
         if len(self.blocks.rows) < self.blocks.length:
             self.blocks.rows.clear()
 
@@ -649,6 +650,8 @@ class Oracle:
     def run(self) -> dict[str, Array]:
         for number, run in enumerate(self.runs):
             if number:
+                if self.is_start:
+                    self.learn_anew()
                 self.wait_until_settled()
                 self.samples.clear()
             measured = self.modality[run.start] == SENSOR
@@ -667,6 +670,11 @@ class Oracle:
                 tau_e = self.torque(k) if self.known else self.y
                 mean = [-abs(tau_e) * filtered.sign[at]]
                 loads[at : at + 1], state = lfilter(*smooth, mean, zi=state)
+            if filtered.measured or at > 12 / (self.w * self.T) + 1:
+                self.is_start = False
+            if self.is_start and self.was_moving(self.z[run, 0][: at + 1]):
+                self.learn_anew()
+                self.wait_until_settled()
             self.settling = max(self.settling - self.T, 0)
             settled, complete = self.settling <= 0, False
             if settled:
@@ -675,10 +683,7 @@ class Oracle:
                 self.samples.append(at)
                 complete = len(self.samples) == self.K
             if complete:
-                row = self.mean_row(filtered, loads)
-                settled = self.was_at_rest(filtered, at, row)
-                if settled:
-                    self.learn(k, filtered, row, rough)
+                self.learn(k, filtered, self.mean_row(filtered, loads), rough)
                 self.samples.clear()
             if not complete or self.K == 1:
                 self.follow()

@@ -62,16 +62,6 @@ EQUIVALENT: tuple[tuple[str, str, str], ...] = (
     ("method.c", "return p->method >= 1 &&", "there is no method 0; in the table it is NULL"),
     ("motion_sign.c", "way = change >= 0 ? 1 : -1;", "it is not used if the change is zero"),
     ("state_variable_filter.c", "sh_fabs(behind[2][i]) <= SMALL", "it is never exactly 1e-30"),
-    ("ud_factor.c", "if (j <= size) { g[j] = D[j] * f[j];", "D behind the last entry is zero"),
-    *(
-        ("ud_factor.c", code, "what it sets behind the last one is not used")
-        for code in (
-            "for (j = 0; j <= size; ++j) { P->D[j] = P_0;",
-            "for (j = 0; j + 2 <= size; j += SH_PANEL)",
-            "if (j <= size) { multiply_two(P, F, j, last, f);",
-            "for (j = 0; j <= size; ++j) { const sh_real beta",
-        )
-    ),
 )
 
 
@@ -138,9 +128,11 @@ def build(folder: Path, mutant: Mutant | None = None) -> Path | None:
 
 
 def files_for(source: str = "") -> list[str]:
-    """Returns all test files, beginning with the tests of the changed source."""
-    names = sorted(TESTED, key=lambda name: name != Path(source).stem)
-    return [str(path) for name in names for path in TESTS.glob(f"c/test_{name}.py")]
+    """Returns all test files, beginning with the tests of the changed source and of all parts."""
+    files = [*sorted(TESTS.glob("c/parts/test_*.py"))]
+    files += [path for name in TESTED for path in TESTS.glob(f"c/test_{name}.py")]
+    own = f"test_{Path(source).stem}"
+    return [str(path) for path in sorted(files, key=lambda path: path.stem != own)]
 
 
 def passes(tree: Path, files: Sequence[str]) -> bool:

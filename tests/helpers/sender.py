@@ -77,6 +77,8 @@ class Viewer:
 
     def __init__(self) -> None:
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        # As much as the system allows: a busy machine does not run this thread for a while.
+        self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 22)
         self._socket.bind(("127.0.0.1", 0))
         self.port = int(self._socket.getsockname()[1])
         self.received: SimpleQueue[Any] = SimpleQueue()  # estimates of ticks

@@ -33,9 +33,10 @@ def counted(program: Path, method: str) -> Mapping[str, float]:
     # The working folder contains no sources, because callgrind_annotate would list these twice.
     listed = run(annotate, *options, profile, cwd=program.parent)
     found: defaultdict[str, float] = defaultdict(float)
-    # A function has a row for its source file and one for each header with inline functions.
+    # A function has a row for its source file, and one more for each header with inline functions,
+    # whose instructions are also among those of the first row.
     for total, function in re.findall(ROW, listed, re.M):
-        found[function] += int(total.replace(",", "")) / STEPS
+        found[function] = max(found[function], int(total.replace(",", "")) / STEPS)
     return found
 
 

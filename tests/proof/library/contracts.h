@@ -1,5 +1,5 @@
 /* Contracts of the functions that work on triangles. With them, a tick is analysed without the loops over all
- * entries, and for any numbers. The programs information.c and ud_factor.c of this folder analyse the replaced
+ * entries, and for any numbers. The programs information.c and least_squares.c of this folder analyse the replaced
  * functions.
  *
  * Each \from names all that the requirements read: Eva reuses the results of a function for calls that read the same
@@ -12,8 +12,8 @@
 #define CONTRACTS_H
 
 #include "information.h"
+#include "least_squares.h"
 #include "regression.h"
-#include "ud_factor.h"
 
 /*@ requires 1 <= a->size <= SH_MAX_COLUMNS;
     requires \valid(x + (0 .. a->size + SH_RIGHT_SIDES - 1));
@@ -113,31 +113,35 @@ sh_real sh_information_drift(sh_information *a, const sh_real *v, sh_real c);
 sh_real sh_information_drift_sample(const sh_information *a, int k, sh_real c, sh_real *row);
 
 /*@ requires 1 <= size <= SH_MAX_PARAMETERS;
-    assigns P->D[0 .. SH_MAX_ROWS - 1], P->U[0 .. SH_MAX_U - 1], P->work, P->least \from P_0;
-    assigns P->size \from size;
-    ensures P->size == size;
-    ensures \initialized(&P->D[0 .. SH_MAX_ROWS - 1]);
+    requires eta_0 == \null || \initialized(eta_0 + (0 .. size - 1));
+    assigns rls->eta[0 .. SH_MAX_ROWS - 1], rls->eta_low[0 .. SH_MAX_ROWS - 1]
+            \from eta_0[0 .. SH_MAX_PARAMETERS - 1], size;
+    assigns rls->P.columns[0 .. SH_MAX_ROWS - 1], rls->P.U[0 .. SH_MAX_U - 1],
+            rls->P.PF[0 .. SH_MAX_ROWS - 1], rls->P.least \from P_0, size;
+    assigns rls->P.size \from size;
+    ensures rls->P.size == size;
+    ensures \initialized(&rls->eta[0 .. SH_MAX_ROWS - 1]);
+    ensures \initialized(&rls->eta_low[0 .. SH_MAX_ROWS - 1]);
 */
-void sh_ud_factor_start(sh_ud_factor *P, int size, sh_real P_0);
+void sh_least_squares_start(sh_least_squares *rls, int size, const sh_real *eta_0, sh_real P_0);
 
-/*@ requires 1 <= P->size <= SH_MAX_PARAMETERS;
-    requires \initialized(F + (0 .. P->size - 1));
-    assigns \result, P->work \from *P, F[0 .. SH_MAX_ROWS - 1];
+/*@ requires 1 <= rls->P.size <= SH_MAX_PARAMETERS;
+    requires \initialized(F + (0 .. rls->P.size - 1));
+    assigns \result, *innovation, rls->eta[0 .. SH_MAX_ROWS - 1], rls->eta_low[0 .. SH_MAX_ROWS - 1],
+            rls->P.columns[0 .. SH_MAX_ROWS - 1], rls->P.U[0 .. SH_MAX_U - 1],
+            rls->P.PF[0 .. SH_MAX_ROWS - 1], rls->P.least
+            \from *rls, kind, factor, F[0 .. SH_MAX_PARAMETERS - 1], y;
+    ensures \result == 0 || \result == 1;
+    ensures \result == 1 ==> \initialized(innovation);
 */
-sh_real sh_ud_factor_project(sh_ud_factor *P, const sh_real *F);
+int sh_least_squares_update(sh_least_squares *rls, int kind, sh_real factor, const sh_real *F,
+                            sh_real y, sh_innovation *innovation);
 
-/*@ requires 1 <= P->size <= SH_MAX_PARAMETERS;
-    assigns P->D[0 .. SH_MAX_ROWS - 1], P->U[0 .. SH_MAX_U - 1], P->work, P->least \from *P, w;
-    assigns \result \from P, *P;
-    ensures \result == P->work.g;
+/*@ requires 1 <= rls->P.size <= SH_MAX_PARAMETERS;
+    requires \initialized(F + (0 .. rls->P.size - 1));
+    assigns \result \from *rls, F[0 .. SH_MAX_PARAMETERS - 1];
 */
-const sh_real *sh_ud_factor_update(sh_ud_factor *P, sh_real w);
-
-/*@ requires 1 <= P->size <= SH_MAX_PARAMETERS;
-    requires \initialized(F + (0 .. P->size - 1));
-    assigns \result \from *P, F[0 .. SH_MAX_ROWS - 1];
-*/
-sh_real sh_ud_factor_variance(const sh_ud_factor *P, const sh_real *F);
+sh_real sh_least_squares_variance(const sh_least_squares *rls, const sh_real *F);
 
 /*@ assigns \result \from *p;
     ensures 1 <= \result <= SH_MAX_COLUMNS;
