@@ -64,9 +64,11 @@ def test_what_is_lost_when_the_process_is_killed(
     sent, now = messages(5000, seed), 0.0
     monkeypatch.setattr(recording, "time", SimpleNamespace(monotonic=lambda: now))
     live, killed = opened(tmp_path), random.Random(seed).randrange(1000, 5000)
-    for each in sent[:killed]:
+    for i, each in enumerate(sent[:killed]):
         now = each["t"]
         live.take(each, 0)
+        if i % 250 == 0:  # a write takes at most half a second, as the simulated clock counts
+            written(live)
     written(live)
     (file,) = tmp_path.glob("*.csv")
     left = Path(shutil.copy(file, tmp_path / "left.csv"))

@@ -1,0 +1,1 @@
+"""`health`: results of many logs of the same joints, and whether something has changed."""
