@@ -1,8 +1,9 @@
 /* Co-simulation master in plain C for StiffnessEstimator.fmu, see docs/how-to/c-master.md.
  *
  * The call is `master FOLDER LIBRARY`, with the folder of the unpacked FMU and its shared library. The program
- * simulates a joint with a spring of 150 N.m/rad and a torque sensor. The joint oscillates at 1 Hz for two seconds, and
- * the estimator receives its measurements. At the end the program prints the estimated stiffness.
+ * simulates a joint with a spring of 150 N.m/rad, whose motor torque is measured. Motor and link oscillate for three
+ * seconds, and the estimator, FilteredRegression, receives the measurements. At the end the program prints the
+ * stiffness, its standard deviation, and whether the estimator is confident.
  */
 #include <dlfcn.h>
 #include <math.h>
@@ -12,6 +13,11 @@
 #include <string.h>
 
 #include "fmi2FunctionTypes.h"
+
+/* Data of the motor: gear ratio [1], inertia [kg.m2], viscous friction [N.m.s/rad]. */
+#define GEAR 50.0
+#define INERTIA 2.3e-5
+#define FRICTION 1e-3
 
 static char *description; /* text of modelDescription.xml */
 static void *library;
@@ -25,6 +31,7 @@ static struct {
     fmi2SetRealTYPE *set_real;
     fmi2SetIntegerTYPE *set_integer;
     fmi2GetRealTYPE *get_real;
+    fmi2GetBooleanTYPE *get_boolean;
     fmi2DoStepTYPE *do_step;
     fmi2TerminateTYPE *terminate;
     fmi2FreeInstanceTYPE *free_instance;
@@ -128,19 +135,30 @@ static void load_functions(void)
     load("fmi2SetReal", &fmu.set_real);
     load("fmi2SetInteger", &fmu.set_integer);
     load("fmi2GetReal", &fmu.get_real);
+    load("fmi2GetBoolean", &fmu.get_boolean);
     load("fmi2DoStep", &fmu.do_step);
     load("fmi2Terminate", &fmu.terminate);
     load("fmi2FreeInstance", &fmu.free_instance);
+}
+
+static void set_real(fmi2Component estimator, const char *parameter, fmi2Real value)
+{
+    const fmi2ValueReference which = reference(parameter);
+
+    check(fmu.set_real(estimator, &which, 1, &value), parameter);
+}
+
+static void set_integer(fmi2Component estimator, const char *parameter, fmi2Integer value)
+{
+    const fmi2ValueReference which = reference(parameter);
+
+    check(fmu.set_integer(estimator, &which, 1, &value), parameter);
 }
 
 /* Creates an instance of the FMU and initialises it at t = 0. Parameters must be set before the initialisation ends. */
 static fmi2Component start(void)
 {
     static const fmi2CallbackFunctions callbacks = {logger, calloc, free, NULL, NULL};
-    const fmi2ValueReference modality = reference("modality"), m = reference("rls.m");
-    const fmi2ValueReference P_0 = reference("rls.P_0");
-    const fmi2Real P_0_start = 1e28;
-    const fmi2Integer sensor = 2, one = 1;
     fmi2Component estimator;
     char guid[64];
 
@@ -152,9 +170,15 @@ static fmi2Component start(void)
     }
     check(fmu.setup_experiment(estimator, fmi2False, 0.0, 0.0, fmi2False, 0.0),
           "fmi2SetupExperiment");
-    check(fmu.set_integer(estimator, &modality, 1, &sensor), "modality");
-    check(fmu.set_integer(estimator, &m, 1, &one), "rls.m");
-    check(fmu.set_real(estimator, &P_0, 1, &P_0_start), "rls.P_0");
+    set_integer(estimator, "method", 2); /* FilteredRegression */
+    set_integer(estimator, "rls.m", 1);  /* no motor sets the stiffness */
+    set_real(estimator, "motor.gamma", GEAR);
+    set_real(estimator, "motor.B", INERTIA);
+    set_real(estimator, "motor.D_theta", FRICTION);
+    set_real(estimator, "range.phi", 0.015);   /* largest deformation [rad] */
+    set_real(estimator, "prior.tau_e", 2.5);   /* largest torque of the spring [N.m] */
+    set_real(estimator, "encoder.theta", 0.0); /* these positions are not rounded */
+    set_real(estimator, "encoder.q", 0.0);
     check(fmu.enter_initialization(estimator), "fmi2EnterInitializationMode");
     check(fmu.exit_initialization(estimator), "fmi2ExitInitializationMode");
     return estimator;
@@ -162,11 +186,11 @@ static fmi2Component start(void)
 
 int main(int argc, char **argv)
 {
-    const double T = 1e-3, k = 150.0, two_pi = 6.283185307179586;
-    const fmi2Real smoother = 1e8;
+    const double T = 1e-3, k = 150.0, w = 6.283185307179586, v = 1.7 * w;
     fmi2Component estimator;
-    fmi2ValueReference inputs[3], sigma, V_a;
-    fmi2Real u[3], estimate = 0.0;
+    fmi2ValueReference inputs[3], outputs[2], confident;
+    fmi2Real u[3], found[2] = {0.0, 0.0};
+    fmi2Boolean is_confident = fmi2False;
     int tick;
 
     if (argc != 3) {
@@ -180,26 +204,30 @@ int main(int argc, char **argv)
     load_functions();
     inputs[0] = reference("theta");
     inputs[1] = reference("q");
-    inputs[2] = reference("tau_e_sensor");
-    sigma = reference("sigma");
-    V_a = reference("filter.V_a");
+    inputs[2] = reference("tau");
+    outputs[0] = reference("sigma");
+    outputs[1] = reference("sigma_std");
+    confident = reference("confident");
 
     estimator = start();
     /* Each iteration sets the measurements of time t_k, then makes a step from t_k to t_k + T with one tick at t_k. */
-    for (tick = 0; tick < 2000; ++tick) {
-        const double t = tick * T, phi = 0.01 * sin(two_pi * t);
+    for (tick = 0; tick < 3000; ++tick) {
+        const double t = tick * T, phi = 0.01 * sin(v * t);
 
-        u[0] = 0.5 * sin(two_pi * t); /* theta */
-        u[1] = u[0] + phi;            /* q */
-        u[2] = k * phi;               /* tau_e_sensor */
-        if (tick == 1000) {           /* a tunable parameter acts from the next tick on */
-            check(fmu.set_real(estimator, &V_a, 1, &smoother), "filter.V_a");
+        u[0] = 0.5 * sin(w * t); /* theta */
+        u[1] = u[0] + phi;       /* q */
+        u[2] = GEAR * (FRICTION * 0.5 * w * cos(w * t) - INERTIA * 0.5 * w * w * sin(w * t)) -
+               k * phi / GEAR; /* tau, from the motor equation (3) of the paper */
+        if (tick == 1000) {    /* a tunable parameter acts from the next tick on */
+            set_real(estimator, "limit.relative_std", 0.05);
         }
         check(fmu.set_real(estimator, inputs, 3, u), "fmi2SetReal");
         check(fmu.do_step(estimator, t, T, fmi2True), "fmi2DoStep");
-        check(fmu.get_real(estimator, &sigma, 1, &estimate), "fmi2GetReal");
+        check(fmu.get_real(estimator, outputs, 2, found), "fmi2GetReal");
+        check(fmu.get_boolean(estimator, &confident, 1, &is_confident), "fmi2GetBoolean");
     }
-    printf("sigma = %.6f N.m/rad\n", estimate);
+    printf("sigma = %.1f +- %.1f N.m/rad, %s\n", found[0], 1.96 * found[1],
+           is_confident ? "confident" : "not confident");
 
     check(fmu.terminate(estimator), "fmi2Terminate");
     fmu.free_instance(estimator);

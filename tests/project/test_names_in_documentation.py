@@ -45,3 +45,20 @@ def test_every_function_of_the_library_exists() -> None:
     for page in PAGES:
         named = set(re.findall(r"\bsh_\w*[a-z]\b", page.read_text(encoding="utf-8")))
         assert {name for name in named if name not in code and "NAME" not in name} == set(), page
+
+
+def test_every_cited_equation_and_section_of_filtered_regression_exists() -> None:
+    """The comments of the C code cite the derivation: equations (F1), (F2) ..., and sections."""
+    page = (REPOSITORY / "docs/filtered-regression/how-it-works.md").read_text(encoding="utf-8")
+    equations = re.findall(r"\\text\{\(F(\d+)\)\}", page)
+    assert equations == [str(n + 1) for n in range(len(equations))]
+    sections = set(re.findall(r"^#+ (\d+(?:\.\d+)?) ", page, re.MULTILINE))
+    cited = 0
+    for file in (REPOSITORY / "c" / "filtered_regression").iterdir():
+        text = file.read_text(encoding="utf-8")
+        for number in re.findall(r"\(F(\d+)\)", text):
+            assert number in equations, (file.name, number)
+            cited += 1
+        for number in re.findall(r"[Ss]ections? (\d+(?:\.\d+)?)", text):
+            assert number in sections, (file.name, number)
+    assert cited > 20

@@ -21,9 +21,9 @@ SEEN = [
     "start",
     "parameters",
     "api",
-    "filtered-regression",
+    "filtered-regression/how-it-works",
     "gallery",
-    "how-to-log",
+    "how-to/log",
     "genindex",
 ]
 """Pages that the tests open in a browser, with tables, formulas, pictures and code."""

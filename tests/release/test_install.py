@@ -3,8 +3,6 @@
 No search path of the tested programs contains a folder of this repository.
 """
 
-import os
-import subprocess
 import sys
 import tarfile
 from pathlib import Path
@@ -13,7 +11,8 @@ import pytest
 
 import controllers
 import sigmahat
-from gate import missing, need
+from clean_environment import programs_of, run_alone
+from gate import need
 from recorded_logs import CONFIGURATION, awas_log, write_log
 from released_fmus import FMUS
 
@@ -21,17 +20,6 @@ REPOSITORY = Path(__file__).parents[2]
 pytestmark = pytest.mark.slow(
     "pip fetches what building needs, builds the package, and installs it with all that it requires"
 )
-
-
-def outside() -> dict[str, str]:
-    """Returns the variables of a shell without paths of this repository and of its environment.
-
-    pip does not compile modules, because the tests never import most of the modules.
-    """
-    own = Path(sys.executable).parent
-    path = [p for p in os.environ["PATH"].split(os.pathsep) if Path(p) != own]
-    kept = {k: v for k, v in os.environ.items() if not k.startswith(("PYTHON", "SIGMAHAT"))}
-    return {**kept, "PATH": os.pathsep.join(path), "PIP_COMPILE": "0"}
 
 
 @pytest.fixture(scope="module")
@@ -45,26 +33,7 @@ def clone(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def programs(clone: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Folder with the programs of an environment into which pip has installed the clone."""
-    folder = tmp_path_factory.mktemp("installed")
-    subprocess.run([sys.executable, "-m", "venv", folder], env=outside(), check=True)
-    programs = folder / Path(sys.executable).parent.name
-    pip = [str(programs / "python"), "-m", "pip", "-q"]
-    probe = [*pip, "download", "-d", str(folder / "probe"), "click"]
-    if subprocess.run(probe, env=outside(), capture_output=True).returncode:
-        missing("a connection to a package index", "connect this machine to one")
-    install = [*pip, "install", str(clone)]
-    done = subprocess.run(install, cwd=folder, env=outside(), capture_output=True, text=True)
-    assert done.returncode == 0, done.stdout + done.stderr
-    return programs
-
-
-def run(program: Path, *arguments: str, cwd: Path) -> str:
-    """Runs a program without other programs on the path, and returns its output."""
-    environment = {**outside(), "PATH": str(program.parent)}
-    command = [str(program), *arguments]
-    done = subprocess.run(command, cwd=cwd, env=environment, capture_output=True, text=True)
-    assert (done.returncode, done.stderr) == (0, ""), done.stdout + done.stderr
-    return done.stdout
+    return programs_of(tmp_path_factory.mktemp("installed"), str(clone))
 
 
 def test_the_package_is_for_the_platform_and_any_python(programs: Path) -> None:
@@ -95,9 +64,11 @@ def test_source_distribution_holds_what_git_holds(clone: Path, tmp_path: Path) -
 
 def test_commands_give_what_the_development_tree_gives(programs: Path, tmp_path: Path) -> None:
     arguments = ("reproduce", "--scenario", "single-linear", "--seeds", "2", "--json")
-    printed = run(programs / "sigmahat", *arguments, cwd=tmp_path)
+    printed = run_alone(programs / "sigmahat", *arguments, cwd=tmp_path)
     assert "RESIDUAL" in printed
-    assert printed == run(Path(sys.executable).with_name("sigmahat"), *arguments, cwd=tmp_path)
+    assert printed == run_alone(
+        Path(sys.executable).with_name("sigmahat"), *arguments, cwd=tmp_path
+    )
 
 
 def test_every_command_has_what_it_needs(programs: Path, tmp_path: Path) -> None:
@@ -113,4 +84,4 @@ def test_every_command_has_what_it_needs(programs: Path, tmp_path: Path) -> None
         "sweep --scenario single-linear --out sweep",
         "report sweep",
     ):
-        assert run(programs / "sigmahat", *command.split(), cwd=tmp_path)
+        assert run_alone(programs / "sigmahat", *command.split(), cwd=tmp_path)
