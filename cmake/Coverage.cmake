@@ -1,6 +1,6 @@
 # The target coverage runs the tests of the C code and prints the share of the branches that they execute.
 sigmahat_add_packages(coverage)
-file(GLOB tests CONFIGURE_DEPENDS tests/c/test_*.py tests/fmi/test_*.py)
+file(GLOB tests CONFIGURE_DEPENDS tests/c/test_*.py tests/c/parts/test_*.py tests/fmi/test_*.py)
 # The tests excluded here compile programs without coverage, run no C code, or need more packages.
 list(FILTER tests EXCLUDE REGEX
      "controller|endurance|library_packages|model_description|mutation|sample_loop|stress")

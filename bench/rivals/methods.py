@@ -53,7 +53,7 @@ def _spring(log: JointLog, phi: Array) -> tuple[Array, Array]:
 def _filtered_regression(log: JointLog) -> RivalEstimate:
     """Estimates on line: the estimate at each sample depends only on samples up to then.
 
-    Parameters are as docs/filtered-regression.md advises: ranges, priors and noise are from the
+    Parameters are as docs/parameters.md advises: ranges, priors and noise are from the
     data sheet, and all others have start values.
     """
     known = {"prior.B": STD_B, "prior.D_theta": STD_D, "prior.torque_gain": STD_GAIN}

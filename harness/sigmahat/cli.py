@@ -8,6 +8,7 @@ import click
 
 from sigmahat.commands.common import printable
 from sigmahat.commands.configure import check, identify, init, open_page
+from sigmahat.commands.health import health
 from sigmahat.commands.live import live
 from sigmahat.commands.motion import motion
 from sigmahat.commands.results import estimate, export, report, validate
@@ -25,14 +26,14 @@ def cli() -> None:
     """Stiffness of robot joints, estimated by FMUs.
 
     Exit status: 0 done; 1 validate: the logs do not agree,
-    check: something is wrong; 2 error, one line on stderr says
+    check: something is wrong, health: something changed; 2 error, one line on stderr says
     which; 130 interrupted.
     """
 
 
 for command in (
     *(reproduce, compare, scenarios, init, open_page, check, motion),
-    *(identify, estimate, live, validate, export, sweep, report),
+    *(identify, estimate, live, validate, health, export, sweep, report),
 ):
     cli.add_command(command)
 

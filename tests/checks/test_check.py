@@ -17,6 +17,7 @@ from checked_logs import (
     joint_log,
     knee_log,
     log_by_hand,
+    log_of_a_hardening_spring,
     log_under_gravity,
 )
 from command_line import Shell
@@ -142,7 +143,10 @@ def test_what_identify_will_set_is_no_finding_before_it() -> None:
     strong = {**KNEE, "spring.k_1": 2e4, "motor.gamma": GEAR, "motor.B": 2e-3}
     for plant in (KNEE, strong):
         columns = as_recorded(joint_log(plant, 1e-3, 400.0))
-        assert wrong(columns, text) == []
+        found = checked(columns, text)
+        assert [*found.of(Severity.WRONG)] == []
+        # Without ranges and noise, the estimator sees changes and misfits that are none.
+        assert [sentence(each) for each in found.of(Severity.NOTE)] == []
 
 
 @pytest.mark.parametrize(
@@ -213,6 +217,15 @@ def test_no_false_alarm_with_a_set_point() -> None:
     assert wrong(awas_log(1.0, 0.3), text) == []
 
 
+def test_a_value_that_does_not_help_is_not_proposed() -> None:
+    # GIVEN a zero that is wrong, of a spring so curved that the tangent shows half of it
+    (found,) = wrong(log_of_a_hardening_spring(0.02), RIGHT)
+    assert found.kind is Kind.ZERO and 0 < float(str(found.measured)) < 0.015
+    # THEN both keys are named, but none with a value, because neither removes the finding
+    assert found.keys == ("ports.q.zero", "ports.theta.zero")
+    assert found.proposed is None and [value for _, value in found.others] == [None]
+
+
 def test_a_wrong_sign_of_theta_and_torque_is_that_of_the_link() -> None:
     text = parameters(KNEE, 1e-3)
     for name in ("theta", "tau"):
@@ -276,6 +289,17 @@ def test_what_no_log_shows_is_listed() -> None:
     assert "ports.q.unit: q is the position of the link, in deg" in found
     current = "ports.tau.gear_ratio: 1 A is 0.05 N.m, the torque of the motor, before the gear"
     assert current in found
+
+
+def test_the_effect_of_the_gain_does_not_depend_on_the_last_sample() -> None:
+    # GIVEN a dead zone for which there is no column, so that the stiffness is small in the middle
+    log = as_recorded(joint_log({**KNEE, "spring.gap": 4e-3}, 1e-3))
+    text = RIGHT.replace("rls.n = 1", "rls.n = 4\nprior.gap = 0")
+    effects = []
+    for end in (15000, 19500, 19782):
+        found = checked({name: column[:end] for name, column in log.items()}, text)
+        effects += [each.measured for each in found.findings if each.kind is Kind.TORQUE_GAIN]
+    assert len(effects) == 3 and np.ptp(effects) < 0.03
 
 
 def test_a_torque_that_saturates_is_noted() -> None:

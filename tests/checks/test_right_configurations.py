@@ -8,7 +8,7 @@ import pytest
 import tomlkit
 
 import robot
-from checked_logs import GEAR, RIGHT, Array, as_recorded, knee_log, stiff_log
+from checked_logs import GEAR, RIGHT, Array, as_recorded, knee_log, log_with_rests, stiff_log
 from drawn_joints import MOTIONS, DrawnJoint, drawn_joint
 from recorded_logs import in_memory
 from shared_data import data_folder
@@ -115,3 +115,16 @@ def test_the_power_of_friction_shows_the_sign_of_the_torque() -> None:
     assert "friction takes power" in sentence(found)
     power = GEAR * float(np.mean(joint["tau"] * np.gradient(joint["theta"], joint["t"])))
     assert found.measured == pytest.approx(power, rel=0.05)
+
+
+def test_the_friction_of_an_arm_that_stands_still_is_no_misfit() -> None:
+    """GIVEN the knee with a weight, between poses at each of which static friction holds as much of
+    the torque as it happens to.
+    WHEN the torque is that of another joint, too, THEN the model does not fit."""
+    log = log_with_rests()
+    found = checked(log, RIGHT)
+    assert not found.is_wrong
+    assert Kind.UNEXPLAINED not in [each.kind for each in found.findings]
+    other = 0.4 * np.sin(2 * np.pi * 0.83 * log["t"])
+    found = checked({**log, "current": log["current"] + other}, RIGHT)
+    assert Kind.UNEXPLAINED in [each.kind for each in found.findings]

@@ -74,7 +74,7 @@ def test_json_of_reproduce_is_its_table(shell: Shell) -> None:
 def test_bash_completes(tmp_path: Path) -> None:
     """GIVEN the line of .bashrc that the documentation recommends, THEN bash completes commands."""
     bash = need("bash")
-    page = (Path(__file__).parents[2] / "docs" / "start.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[2] / "docs" / "commands.md").read_text(encoding="utf-8")
     (line,) = re.findall(r"`(eval [^`]*bash_source[^`]*)`", page)
     expected = {
         "sigmahat rep": {"report", "reproduce"},

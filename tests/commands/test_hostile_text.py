@@ -177,7 +177,7 @@ def test_reports(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """One of twenty reports has plots, which take time."""
     contents, out = from_log.from_log(folder), folder / "report.html"
     plots = [*contents.panels[:2]]
-    known = Page(page._page(replace(contents, panels=plots, answer=()), out))
+    known = Page(page.page(replace(contents, panels=plots, answer=()), out))
     beside = from_log._beside_the_table(folder)
     texts = {name: (folder / name).read_text() for name in (FORMAT.file, REPLAYED.file)}
     for i, draw in enumerate(draws("report")):
@@ -191,7 +191,7 @@ def test_reports(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
                 patch.setattr(from_log, "_beside_the_table", returning((*forged, *beside[2:])))
             try:
                 made = replace(from_log.from_log(folder), panels=panels, answer=())
-                check_page(page._page(made, out), known)
+                check_page(page.page(made, out), known)
             except ValueError as error:
                 assert len(str(error)) < LONGEST + len(str(folder))
         (folder / name).write_text(texts[name])

@@ -3,6 +3,8 @@
 import math
 import os
 import signal
+import subprocess
+import sys
 import time
 from collections.abc import Callable
 from functools import partial
@@ -122,3 +124,30 @@ def test_relative_error_of_zero_stiffness_is_refused() -> None:
 def test_interval_of_equal_values_is_exactly_zero() -> None:
     assert float(np.std([0.1] * 20)) > 0  # wrong because of rounding
     assert mean_interval([0.1] * 20) == (0.1, 0.0)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="sends Ctrl-C to one process")
+def test_a_second_interrupt_leaves_no_workers() -> None:
+    """GIVEN jobs of two seconds in two processes, WHEN the user is impatient."""
+    script = (
+        "import time\n"
+        "from functools import partial\n"
+        "from sigmahat.experiments.pool import run_all\n"
+        "jobs = [partial(time.sleep, 2.0)] * 6\n"
+        "run_all(jobs, 2, lambda done: print(done, flush=True))\n"
+    )
+    command = [sys.executable, "-c", script]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == b"1\n"
+        process.stdout.readline()  # both workers have begun other jobs
+        time.sleep(0.5)
+        for _ in range(2):
+            process.send_signal(signal.SIGINT)
+            time.sleep(0.5)
+        try:
+            _, errors = process.communicate(timeout=20)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            raise
+    assert errors.strip().endswith(b"KeyboardInterrupt")

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 import tomlkit
+from numpy.typing import NDArray
 
 from command_line import Shell
 from recorded_logs import in_memory, write_log
@@ -114,9 +115,9 @@ def test_a_set_point_of_two_settings_and_a_column_with_a_text(shell: Shell) -> N
     assert read()["ports"]["theta_c"]["column"] == "theta_c_mm"
 
 
-def two_joints(*names: str) -> None:
+def two_joints(*names: str, **more: NDArray[np.floating]) -> None:
     """Writes a log with motor and link of a hip and a knee. `names` selects some of the columns."""
-    log = {"t": T}
+    log = {"t": T, **more}
     for joint, w in (("hip", 5), ("knee", 3)):
         log[f"{joint}_motor_pos_rad"] = np.sin(w * T)
         log[f"{joint}_link_pos_rad"] = 1.01 * np.sin(w * T)
@@ -132,8 +133,10 @@ def test_all_joints_in_one_file(shell: Shell) -> None:
     two_joints()
     shell.run("init leg.csv")
     text = Path("leg.toml").read_text()
-    for once in ("torque_constant = 0", "samplePeriod", "motor.B"):
+    for once in ("samplePeriod", "motor.B"):
         assert text.count(once) == 1
+    for of_each in ("torque_constant = 0", "motor.gamma = 0"):  # motors and gears differ
+        assert text.count(f"\n{of_each}   # FILL IN") == 2
     for joint in ("hip", "knee"):
         assert port_columns("leg.toml", joint) == {
             "theta": f"{joint}_motor_pos_rad",
@@ -144,6 +147,25 @@ def test_all_joints_in_one_file(shell: Shell) -> None:
     assert port_columns("knee.toml") == port_columns("leg.toml", "knee")
     line = shell.refused("init leg.csv --joint kne --config kne.toml")
     assert "unknown joint 'kne'; did you mean 'knee'" in line
+
+
+def test_the_temperature_of_a_motor_is_proposed(shell: Shell) -> None:
+    warm = 35 + 0.1 * T
+    two_joints(knee_motor_temperature_degC=warm)
+    shell.run("init leg.csv")
+    assert read("leg.toml", "knee")["temperature"]["column"] == "knee_motor_temperature_degC"
+    assert "temperature" not in read("leg.toml", "hip")
+    for columns, chosen in (
+        ({"temp": warm}, "temp"),
+        ({"ambient_temp": warm}, None),
+        ({"link_temp": warm}, None),
+        ({"temp": warm + 273}, None),
+        ({"temp_1": warm, "temp_2": warm}, None),
+        ({"motor_temp": warm, "board_temp": warm}, "motor_temp"),
+    ):
+        write_log({**LOG, **columns}, Path("log.csv"))
+        shell.run("init log.csv --force")
+        assert read().get("temperature", {}).get("column") == chosen
 
 
 def test_a_motor_never_goes_with_the_link_of_another_joint(shell: Shell) -> None:

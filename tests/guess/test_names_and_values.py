@@ -43,7 +43,7 @@ N = 7000
         ("current_position", "position", None, None),
         ("series_elastic_torque", "torque", None, None),
         ("calibrated", None, None, None),
-        ("Motortemperatur [°C]", "other", "motor", None),
+        ("Motortemperatur [°C]", "temperature", "motor", None),
         ("joint.link.position [arcmin]", "position", "link", "arcmin"),
         ("joint.motor.torque [mN*m]", "torque", "motor", "mN.m"),
         ("exo_torque_Nm_per_kg", "torque", None, None),
@@ -175,6 +175,15 @@ def test_times_that_stand_in_two_rows_each_are_times(m: Motion) -> None:
     log = {"time": T * np.arange(N), "theta": m.theta, "q": m.q, "tau": m.tau}
     found = only({name: np.repeat(values, 2) for name, values in log.items()})
     assert (found.time, found.clock.interval) == ("time", T)
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_the_current_of_a_weight_is_no_offset(m: Motion, sign: int) -> None:
+    """Of an arm under gravity, the current never comes near 0."""
+    current = sign * (3.0 + m.tau / np.ptp(m.tau))
+    found = only({"t_s": T * np.arange(N), "theta": m.theta, "q": m.q, "current": current})
+    assert found.ports["tau"].zero == 0
+    assert "may be that of a weight" in found.ports["tau"].notes["zero"]
 
 
 def test_a_torque_far_from_zero_has_an_offset_to_check(m: Motion) -> None:

@@ -394,6 +394,24 @@ def test_the_prior_holds_what_encoders_read_at_different_times_show(path: Path) 
         assert abs(end - 1.2e-3) <= prior * 1.2e-3 * (1 + 1e-5)
 
 
+@pytest.mark.parametrize("name", ["B", "D_theta"])
+def test_the_estimator_accepts_whatever_identify_holds_possible(
+    name: str, found: Found, path: Path
+) -> None:
+    # GIVEN a value whose printed interval reaches far beyond that of the fits
+    value, half_width = 1.2e-4, 1.18e-4
+    unclear = Quantity(value, half_width, "", determined=False)
+    result = replace(found[1.0], quantities={**found[1.0].quantities, name: unclear})
+    path.write_text('[ports.q]\ncolumn = "q"\n')
+    write(result, path)
+    read = read_configuration(path).parameters
+    middle, prior = float(read[f"motor.{name}"]), float(read[f"prior.{name}"])
+    assert middle == pytest.approx(value, rel=1e-3)
+    assert unclear.interval[1] > 5 * middle
+    # THEN the value is at most three standard deviations of the prior away (SH_OUTSIDE_PRIOR)
+    assert middle * (1 + 3 * prior) >= unclear.interval[1] * (1 - 1e-5)
+
+
 @pytest.mark.parametrize(("noise_of_phi", "is_noise"), [(1e-7, False), (2e-3, True)])
 def test_a_noisy_deformation_limits_the_bandwidth(noise_of_phi: float, is_noise: bool) -> None:
     equal_at_40_Hz = 9e-6 / (1e-3 * (2 * np.pi * 40) ** 2) ** 2

@@ -20,6 +20,7 @@ from sigmahat.show.style import limits
 
 GAP = slice(20_000, 20_200)
 SPIKE = 5.0
+SKIPPED = 201 + 119  # the samples after the spike, which is the first one after the gap, for 0.12 s
 FINDING = Finding(Kind.JUMP, Severity.WRONG, "ports.q.column", 50.0, "deg", about="<q>")
 NOTES = TypeAdapter(list[RecordingNote])
 
@@ -64,12 +65,12 @@ def test_the_band_is_that_of_the_file(folder: Path, page: Page) -> None:
 def test_ticks_notes_parameters_and_findings(folder: Path, page: Page) -> None:
     answer = json.loads((folder / "answer.json").read_text())
     sheet = json.loads((folder / "out" / "joint.json").read_text())
-    assert answer["skipped"] == 201
+    assert answer["skipped"] == SKIPPED
     text = page.run("return document.body.textContent")
     parameters = page.run(ROWS, "Joint and motor")
     findings = page.run(ROWS, "Checks")
     every = page.run(ROWS, "Parameters of the estimator")
-    assert f"201 of {answer['ticks']} ticks skipped, a tick every 0.001 s" in text
+    assert f"{SKIPPED} of {answer['ticks']} ticks skipped, a tick every 0.001 s" in text
     for note in NOTES.validate_python(answer["notes"]):
         assert note.in_words in text
     assert findings == ["wrong ports.q.column: <q> jumps by 50 deg, as a counter that starts again"]

@@ -73,7 +73,7 @@ def export(folder: Path, kind: str, out: Path) -> Path:
 
 def test_what_it_rests_on(original: Path) -> None:
     sheet = sheet_of(original)
-    assert (sheet["format"], sheet["version"]) == ("sigmahat joint data sheet", 1)
+    assert (sheet["format"], sheet["version"]) == ("sigmahat joint data sheet", 2)
     assert sheet["sigmahat"] == sigmahat.__version__
     description = fmpy.read_model_description(sigmahat.fmu("StiffnessEstimator"))
     assert sheet["fmu"]["guid"] == description.guid
@@ -283,7 +283,7 @@ def test_wrong_arguments(arguments: str, words: str, knee: Shell) -> None:
 @pytest.mark.parametrize(
     ("of_sheet", "of_start", "words"),
     [
-        ({"version": 2}, {}, "expected version 1 of the format, got 2"),
+        ({"version": 1}, {}, "expected version 2 of the format, got 1"),
         ({"polynomial": None}, {}, "damaged: polynomial"),
         ({"mine": 1}, {}, "damaged: mine"),
         ({"doubt": "x y"}, {}, "damaged: doubt: expected a word, got 'x y'; run"),

@@ -77,13 +77,10 @@ def test_a_wrong_zero_is_no_fault_where_the_stiffness_is_right(shell: Shell) -> 
         assert abs(value - KNEE["spring.k_1"]) < half < 50
 
 
-@pytest.mark.parametrize(
-    ("fault", "words"),
-    [("torque sign", "is negative"), ("link sign", "does not predict the torque")],
-)
-def test_the_same_fault_in_both_logs_is_named(fault: str, words: str, shell: Shell) -> None:
+@pytest.mark.parametrize("fault", ["torque sign", "link sign"])
+def test_the_same_fault_in_both_logs_is_named(fault: str, shell: Shell) -> None:
     found = validate(shell, unwrapped(fault), 1)
     assert found["agree"] is None
-    assert words in found["fault"] and WRONG[fault][2][0].rpartition(".")[2] in found["fault"]
+    assert WRONG[fault][2][0].rpartition(".")[2] in found["fault"]
     text = shell.run("validate second.parquet --with first.toml", 1)
     assert found["fault"] in text and "the logs agree" not in text

@@ -46,3 +46,16 @@ def test_without_any_stiffness_no_change_of_it_is_told(std: float, says: bool) -
     line = headline(curve(std), Confidence("Change", {"Change": 1.0}), [unknown])
     assert ("changed" in line) is says
     assert list(told([unknown, known], curve(std))) == ([unknown, known] if says else [known])
+
+
+def test_a_dead_zone_in_the_middle_leaves_the_stiffness_beyond_it() -> None:
+    """GIVEN a curve that is known at 0.05 rad and beyond, but not at 0 rad."""
+    phi = np.linspace(-0.1, 0.1, 5)
+    std = np.array([0.5, 0.2, 30.0, 0.1, 0.6])
+    branch = Branch(0.0, (-0.1, 0.1), phi, 2 * phi, 0 * phi, np.array([2.0, 2, 1, 2, 2]), std)
+    curve = Curve(polynomial=None, branches=[branch])  # type: ignore[arg-type]
+    line = headline(curve, Confidence("None", {"None": 1.0}))
+    assert line == "2 +- 0.196 N.m/rad at 0.05 rad, cannot tell at 0 rad, confident"
+    # WHEN the estimate is not confident, THEN no other deformation is chosen
+    doubted = headline(curve, Confidence("Misfit", {"Misfit": 1.0}))
+    assert doubted.startswith("cannot tell (1 +- 58.8) N.m/rad at 0 rad")

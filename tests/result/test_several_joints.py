@@ -41,9 +41,10 @@ def test_from_the_log_to_one_report(shell: Shell) -> None:
     write_log(log, Path("leg.csv"))
     shell.run("init leg.csv")
     document = tomlkit.parse(Path("leg.toml").read_text())
-    theta, tau = document["ports"]["theta"], document["ports"]["tau"]
-    theta["counts_per_turn"], theta["gear_ratio"] = COUNTS, GEAR
-    tau["torque_constant"] = TORQUE_CONSTANT
+    for own in document["joints"].values():
+        theta, tau = own["ports"]["theta"], own["ports"]["tau"]
+        theta["counts_per_turn"], theta["gear_ratio"] = COUNTS, GEAR
+        tau["torque_constant"] = TORQUE_CONSTANT
     of_knee = document["joints"]["knee"]["ports"]["tau"]
     of_knee["torque_constant"] = 2 * TORQUE_CONSTANT
     of_knee["torque_constant"].comment("its drive shows half of the current")

@@ -71,6 +71,7 @@ def wait_for_workers(address: str, count: int) -> None:
         client.wait_for_workers(count, timeout=300)
 
 
+@pytest.mark.complete
 @pytest.mark.slow("the sweep waits for a slow scheduler, and for workers, before it gives up")
 def test_a_scheduler_that_is_slow_and_without_workers(
     scheduler: subprocess.Popen[bytes], address: str, shell: Shell
@@ -89,6 +90,7 @@ def test_a_scheduler_that_is_slow_and_without_workers(
     assert not Path("out").exists()
 
 
+@pytest.mark.complete
 @pytest.mark.slow("a cluster of processes is started")
 def test_one_of_two_workers_killed(address: str, folder: Path, shell: Shell) -> None:
     command = f"{QUICK} --seeds 16"

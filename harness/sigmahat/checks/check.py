@@ -41,8 +41,10 @@ _ROOM = 1.2  # ratio of a proposed range to the largest value in the log
 _WIDE = 5.0  # a range is too wide from this ratio to the largest value
 _ERROR = 100  # a contradiction counts more than all notes together
 _TORQUE = 3.0  # ratio of torques, measured to configured
+_BY_NOISE = ("Misfit", "Change")  # doubts that compare errors of the model with the noise
 
-Outputs = Mapping[str, np.ndarray[Any, Any]]
+Output = np.ndarray[Any, Any]
+Outputs = Mapping[str, Output]
 
 
 def check(log: Log, configuration: Configuration) -> Checked:
@@ -65,7 +67,7 @@ def check(log: Log, configuration: Configuration) -> Checked:
             replayed = (each for each in replayed if each.about != "NegativeStiffness")
         findings += replayed
     is_regression = view.parameters["method"] == "FilteredRegression"
-    per_gain = float(outputs["sigma_per_gain"][-1]) if is_regression else 1.0
+    per_gain = _usual(outputs["sigma_per_gain"]) if is_regression else 1.0
     findings += _rests_on(view, installed_model("StiffnessEstimator").parameters({}), per_gain)
     order = list(Severity)
     findings.sort(key=lambda each: order.index(each.severity))
@@ -95,7 +97,7 @@ def check_identified(log: Log, before: Configuration, after: Configuration) -> C
 def _tried(view: LogView, finding: Finding) -> Finding:
     """Completes a finding with the proposed value that leaves the fewest findings.
 
-    The finding gets no value if no proposed value removes the finding.
+    The finding gets no value, and other keys neither, if no proposed value removes the finding.
     """
     if finding.severity is not Severity.WRONG or finding.proposed is None:
         return finding
@@ -115,7 +117,7 @@ def _tried(view: LogView, finding: Finding) -> Finding:
         if weight < least:
             best, least = (key, value), weight
     if best is None:
-        return replace(finding, proposed=None)
+        return replace(finding, proposed=None, others=[(key, None) for key, _ in finding.others])
     others = [setting for setting in settings if setting != best]
     return replace(finding, key=best[0], proposed=best[1], others=others)
 
@@ -183,6 +185,12 @@ def _rests_on(view: LogView, start: Mapping[str, Value], per_gain: float) -> Ite
         yield Finding(Kind.ABSENT, Severity.RESTS_ON, f"prior.{name}", 0.0, "", about=name)
 
 
+def _usual(per_gain: Output) -> float:
+    """Returns the median in the second half: in a dead zone, where the stiffness is about 0, the
+    relative change of a single tick may have any value."""
+    return float(np.median(per_gain[len(per_gain) // 2 :]))
+
+
 def _replayed(view: LogView, outputs: Outputs, has_misfit: bool) -> Iterator[Finding]:
     """Yields findings from the outputs of the estimator when the log is replayed.
 
@@ -195,9 +203,7 @@ def _replayed(view: LogView, outputs: Outputs, has_misfit: bool) -> Iterator[Fin
     if learned < _LEARNED:
         yield Finding(Kind.LEARNED, Severity.NOTE, "time.longest_gap", learned, "", 1.0)
     if view.parameters["method"] == "FilteredRegression":
-        # The misfit is relative to the noise, which `identify` finds.
-        is_noise_known = _noise_key(view) in view.configuration.parameters
-        yield from _claims(outputs, is_noise_known and not has_misfit)
+        yield from _claims(outputs, _is_noise_known(view), has_misfit)
 
 
 def _range(view: LogView, outputs: Outputs) -> Iterator[Finding]:
@@ -221,10 +227,16 @@ def _noise_key(view: LogView) -> str:
     return "noise.tau_e" if view.has_sensor else "noise.tau"
 
 
+def _is_noise_known(view: LogView) -> bool:
+    """Returns whether the configuration gives the noise of the torque. Before `identify` has run,
+    it is usually missing, which is no finding; the start value is of another robot."""
+    return _noise_key(view) in view.configuration.parameters
+
+
 def _noise(view: LogView) -> Iterator[Finding]:
     """Compares the noise of the torque with the configured noise."""
     key = _noise_key(view)
-    if not view.pieces or (view.parameters["modality"] == "Model"):
+    if not view.pieces or view.parameters["modality"] == "Model" or not _is_noise_known(view):
         return
     times = abs(view.gamma) if view.has_sensor else 1.0
     longest = max(view.pieces, key=lambda piece: len(piece.tau))
@@ -234,17 +246,21 @@ def _noise(view: LogView) -> Iterator[Finding]:
         yield Finding(Kind.NOISE, Severity.NOTE, key, noise, "N.m", given, proposed)
 
 
-def _claims(outputs: Outputs, with_misfit: bool) -> Iterator[Finding]:
+def _claims(outputs: Outputs, is_noise_known: bool, has_misfit: bool) -> Iterator[Finding]:
     """Yields a large misfit of the model, and doubts that the estimator reports often.
 
-    with_misfit  whether the misfit of the estimator says something that is not known yet
+    is_noise_known  whether the configuration gives the noise: misfit and evidence of a change are
+                    relative to it, and say nothing without it
+    has_misfit      whether another finding says that the model does not fit
     """
     misfit = float(outputs["misfit"][-1])
     is_misfit = misfit > _MISFIT
-    if is_misfit and with_misfit:
+    if is_misfit and is_noise_known and not has_misfit:
         yield Finding(Kind.MISFIT, Severity.NOTE, "rls.n", misfit, "", 1.0)
     doubts = outputs["doubt"][len(outputs["doubt"]) // 2 :]
     for item, (key, _) in DOUBTS.items():
+        if item in _BY_NOISE and not is_noise_known:
+            continue
         share = float(np.mean(doubts == item))
         if share > _DOUBTED and not (item == "Misfit" and is_misfit):
             yield Finding(Kind.DOUBT, Severity.NOTE, key, share, "", 0.0, about=item)

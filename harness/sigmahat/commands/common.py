@@ -85,6 +85,36 @@ def out_option(what: str, default: str) -> Callable[[_Command], _Command]:
     return click.option("--out", callback=folder, help=text)
 
 
+class ChangeLimit(click.ParamType[tuple[str, float]]):
+    """A limit such as stiffness=-10% or backlash=+0.5mrad: a quantity, and a relative change of it;
+    of the backlash a change [rad]."""
+
+    name = "QUANTITY=CHANGE"
+
+    def __init__(self, *quantities: str) -> None:
+        self._quantities = quantities
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, context: click.Context | None
+    ) -> tuple[str, float]:
+        name, _, change = str(value).partition("=")
+        unit = "mrad" if name == "backlash" else "%"
+        try:
+            number = float(change.removesuffix(unit))
+        except ValueError:
+            number = 0.0
+        if name not in self._quantities or not change.endswith(unit) or not 0 < abs(number) < 1e6:
+            examples = {"stiffness": "stiffness=-10%", "backlash": "backlash=+0.5mrad"}
+            others = [examples.get(each, f"{each}=+20%") for each in self._quantities]
+            is_bare = name in self._quantities and number != 0 and not change.endswith(unit)
+            hint = f", without {unit}: did you mean {name}={change}{unit}?" if is_bare else "."
+            self.fail(f"expected {', '.join(others)}; got {str(value)!r}{hint}", param, context)
+        if unit == "%" and number <= -100:
+            expected = f"expected a change above -100 %, such as {name}=-10%"
+            self.fail(f"{expected}; got {str(value)!r}.", param, context)
+        return name, number * (1e-3 if unit == "mrad" else 1e-2)
+
+
 def refuse_to_overwrite(path: Path, force: bool, option: str) -> None:
     """Raises ClickException if a file exists, and the user does not force the command."""
     if path.exists() and not force:

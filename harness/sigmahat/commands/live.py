@@ -49,6 +49,17 @@ if TYPE_CHECKING:
     type=common.PATH,
     help="Continue an earlier estimation: its folder of results, or the state.json in it.",
 )
+@click.option(
+    "--health",
+    "results",
+    type=common.PATH,
+    help="Results of earlier logs, for --limit: folder of `sigmahat health`, or of `estimate`.",
+)
+@click.option(
+    "--limit",
+    type=common.ChangeLimit("stiffness"),
+    help="Tell when the stiffness has changed by this since the first logs: stiffness=-10%.",
+)
 @common.answer_options
 def live(
     config: Path,
@@ -59,6 +70,8 @@ def live(
     host: str,
     out: Path,
     start_from: Path | None,
+    results: Path | None,
+    limit: tuple[str, float] | None,
 ) -> None:
     """Estimate on line: read messages of a robot and send estimates, until Ctrl-C.
 
@@ -67,13 +80,17 @@ def live(
     """
     from sigmahat.files.output import created_folder
     from sigmahat.live.endpoints import Endpoints
+    from sigmahat.live.limits import Limits
     from sigmahat.live.loop import Inbox, receive, watch
     from sigmahat.live.session import Session
     from sigmahat.live.terminal import terminal
 
     common.need_fmus("StiffnessEstimator")
+    if (results is None) != (limit is None):
+        raise click.UsageError("--limit needs --health, the results of earlier logs, and reverse")
     with common.errors_in_one_line(out), created_folder(out):
-        session, inbox = Session(config, out, start_from), Inbox()
+        limits = Limits.read(results, limit[1]) if results and limit else None
+        session, inbox = Session(config, out, start_from, limits), Inbox()
         ends = Endpoints(session, host, out)
         titles = columns.split(",") if columns else []
         opened = ends.source(source, titles) if replay is None else ends.replay(replay)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import suppress
+from datetime import datetime
 from functools import partial
 from importlib import import_module
 from pathlib import Path
@@ -28,12 +29,19 @@ if TYPE_CHECKING:
 @click.option(
     "--start-from",
     type=common.PATH,
-    help="Continue the estimation of another log: its folder of results, or the state.json in it.",
+    help="Continue the estimation of another log: its folder of results, of several joints the one "
+    "with a folder for each; or state.json.",
 )
 @click.option(
     "--to",
     type=click.Choice(["mcap"]),
     help="Write the estimates as messages, too: estimate.mcap, for Foxglove and PlotJuggler.",
+)
+@click.option(
+    "--recorded",
+    type=click.DateTime(["%Y-%m-%d", "%Y-%m-%dT%H:%M", "%Y-%m-%dT%H:%M:%S"]),
+    help="When LOG was recorded (UTC), if neither its clock nor its name says this; for `sigmahat "
+    "health`.",
 )
 @common.joint_option
 @common.answer_options
@@ -43,6 +51,7 @@ def estimate(
     out: Path,
     start_from: Path | None,
     to: str | None,
+    recorded: datetime | None,
     joint: str,
 ) -> None:
     """Replay LOG through the estimator, and add the stiffness to its table.
@@ -56,12 +65,15 @@ def estimate(
     from sigmahat.checks.findings import as_dict
     from sigmahat.checks.text import summary as of_checks
     from sigmahat.files.tables import aligned
+    from sigmahat.recording.recorded import possible_time
     from sigmahat.result.estimate import summary, write_joints
 
     if to is not None:
         import_module("mcap")  # report a missing package before the work
     with common.errors_in_one_line(out):
-        job = partial(_estimated, out, start_from, to)
+        if recorded is not None:
+            possible_time(recorded)
+        job = partial(_estimated, out, start_from, to, recorded)
         found = common.for_each_joint(log, config, joint, job)
         if len(found) > 1:
             write_joints({name: each for name, (each, _) in found.items()}, out)
@@ -81,24 +93,39 @@ def estimate(
 
 
 def _estimated(
-    out: Path, start_from: Path | None, to: str | None, log: Log, configuration: Configuration
+    out: Path,
+    start_from: Path | None,
+    to: str | None,
+    recorded: datetime | None,
+    log: Log,
+    configuration: Configuration,
 ) -> tuple[Estimate, Checked]:
     """Writes the files of a joint. Returns its estimate and the result of the checks."""
     from sigmahat.checks.check import check
     from sigmahat.files.output import output_folder
     from sigmahat.result import estimate as job
+    from sigmahat.result.learned import state_of
 
     # The figure needs this import, which can run meanwhile: the replay is mostly C code.
     Thread(target=_import, args=["matplotlib.figure"]).start()
     checked, own = check(log, configuration), out / configuration.joint
-    if start_from is not None and start_from.is_dir():
-        start_from /= configuration.joint
+    if start_from is not None:
+        start_from = state_of(start_from, configuration.joint)
     with common.progress("Replaying", 1000) as bar, output_folder(own) as folder:
         findings = [each.as_dict() for each in checked.findings]
         result = job.estimate(
-            log, configuration, folder, bar.update, start_from, to == "mcap", findings
+            log, configuration, folder, bar.update, start_from, to == "mcap", findings, recorded
         )
     return result, checked
+
+
+def estimated_into(out: Path, log: Log, configuration: Configuration) -> None:
+    """Writes the files of a joint, without checks and messages."""
+    from sigmahat.files.output import output_folder
+    from sigmahat.result.estimate import estimate
+
+    with output_folder(out / configuration.joint) as folder:
+        estimate(log, configuration, folder)
 
 
 def _import(module: str) -> None:
@@ -230,6 +257,7 @@ def report(folder: Path, out: Path | None) -> None:
     from sigmahat.report.page import joints_of
     from sigmahat.report.page import report as make
 
+    import_module("bokeh")  # report a missing package before the work
     out = out or folder / REPORT
     with common.errors_in_one_line(out, "--out FILE"):
         for joint in joints_of(folder):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import math
 from collections.abc import Callable, Container, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -30,6 +31,21 @@ _NEEDED = {
     "Model": ("theta", "q"),
 }  # fmt: skip
 """Inputs without which a modality has no torque."""
+
+
+@dataclass(frozen=True)
+class Covariance:
+    """Estimates of one joint that were made together, with their covariance.
+
+    The first are the stiffness at points [N.m/rad]. Behind them are the QUANTITIES: B [kg.m2],
+    D_theta [N.m.s/rad], tau_coulomb [N.m], load_friction [1], hysteresis [N.m], and lost_torque
+    [N.m], by which a dead zone reduces the torque of the spring beyond it. A quantity that is taken
+    as exact or absent has the variance 0.
+    """
+
+    values: Array  #: [size: points + 6]
+    per_gain: Array  #: Change with a relative change of the gain of the torque, of the same size.
+    covariance: Array  #: Without the gain of the torque [size: (points + 6) x (points + 6)].
 
 
 def _missing(parameters: Mapping[str, Value]) -> int:
@@ -175,6 +191,24 @@ class Estimator:
             found.append(self._joints.evaluated(joint, *points).reshape(-1, *both[0].shape))
         values = np.stack(found, axis=1) if self._shape else found[0]
         return dict(zip(POINT, values, strict=True))
+
+    def covariance(self, phi: ArrayLike, set_point: ArrayLike) -> Covariance | None:
+        """The stiffness at points, and motor data and effects, with their covariance.
+
+        phi        deformations [rad] [size: points]
+        set_point  one for all points, or one for each [1]
+
+        Returns None for a method that claims no uncertainty, and for a number that overflows.
+        Nothing is learned. Raises ValueError for an estimator of several joints.
+        """
+        if len(self._joints.memory) != 1:
+            raise ValueError(f"expected one joint, got {len(self._joints.memory)}")
+        both = np.broadcast_arrays(np.asarray(phi, np.float64), np.asarray(set_point, np.float64))
+        points = (np.ascontiguousarray(each).ravel() for each in both)
+        found = self._joints.covariance(0, *points)
+        if found is None or not all(np.all(np.isfinite(each)) for each in found):
+            return None
+        return Covariance(*found)
 
     def output(self, name: str) -> Any:
         """The present value of any output: a number, or an array of shape (joints,).

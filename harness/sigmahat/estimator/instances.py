@@ -17,6 +17,8 @@ INPUTS = ("theta", "q", "theta_c", "tau", "tau_e_sensor")  # inputs in the order
 
 _CACHE_LINE = 64  # [bytes]
 _POINT = 5  # members of sh_point
+QUANTITIES = ("B", "D_theta", "tau_coulomb", "load_friction", "hysteresis", "lost_torque")
+"""Quantities of sh_estimator_covariance behind the stiffness, in the order of the library."""
 _PIECE = 1 << 16  # ticks between two moments at which Ctrl-C can end the run
 _GROUP = 64  # joints at a time: 1024 ticks of each, so that its state stays in the cache
 
@@ -95,6 +97,18 @@ class Joints:
         arrays = (phi.ctypes.data, set_point.ctypes.data, points.ctypes.data)
         self._library.sh_joint_evaluate(self._address(joint), phi.size, *arrays)
         return np.transpose(points)
+
+    def covariance(
+        self, joint: int, phi: NDArray[np.float64], set_point: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]] | None:
+        """Stiffness at each point and QUANTITIES: values, change per gain, and covariance, as in
+        sh_estimator_covariance; None for a method without them."""
+        size = phi.size + len(QUANTITIES)
+        values, per_gain, covariance = np.empty(size), np.empty(size), np.empty((size, size))
+        arrays = (each.ctypes.data for each in (phi, set_point, values, per_gain, covariance))
+        if self._library.sh_joint_covariance(self._address(joint), phi.size, *arrays):
+            return None
+        return values, per_gain, covariance
 
     def copied(self) -> Joints:
         other = copy(self)

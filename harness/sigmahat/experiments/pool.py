@@ -53,7 +53,9 @@ def spread(
     except BrokenProcessPool as error:
         raise WorkersLostError("another program ended a worker process") from error
     finally:
-        executor.shutdown(cancel_futures=True)
+        # A second Ctrl-C would leave workers that wait for jobs, and this process waiting for them.
+        with interrupts_wait():
+            executor.shutdown(cancel_futures=True)
 
 
 def run_all(

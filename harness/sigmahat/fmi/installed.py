@@ -30,7 +30,7 @@ def fmu(name: str) -> Path:
 
 
 def version() -> str:
-    """Version of the package, for example "0.1.0"."""
+    """Version of the package, for example "1.0.0"."""
     return metadata.version("sigmahat")
 
 

@@ -24,6 +24,7 @@ _FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "sh_joint_check": (ctypes.c_int, [_POINTER, _POINTER]),
     "sh_joint_start": (None, [_POINTER]),
     "sh_joint_evaluate": (None, [_POINTER, _SIZE, *[_POINTER] * 3]),
+    "sh_joint_covariance": (ctypes.c_int, [_POINTER, _SIZE, *[_POINTER] * 5]),
     "sh_joints_saved_size": (_SIZE, [_SIZE]),
     "sh_joints_save": (None, [_POINTER, _SIZE, _SIZE, _POINTER]),
     "sh_joints_restore": (ctypes.c_char_p, [_POINTER, _SIZE, _SIZE, _POINTER, _SIZE]),

@@ -16,6 +16,7 @@ from sigmahat.guess.ports import PortGuess, guess_ports
 from sigmahat.guess.roles import Roles, assign, chosen_roles
 from sigmahat.recording.log import Log, LogError
 
+_TEMPERATURES = (-40.0, 200.0)  # [degC]: of a motor that runs
 _OF_A_JOINT = ("position", "deformation", "torque", "current", None)
 
 
@@ -63,6 +64,7 @@ class JointGuess:
     time: str | None  # the time column of ports without their own; None: the log has no times
     clock: TimeColumn
     ports: Mapping[str, PortGuess]  # guesses of the ports that have a column, in the order of PORTS
+    temperature: str | None  # column with the temperature of the motor [degC]; None without one
 
 
 def guess(columns: Columns) -> dict[str, JointGuess]:
@@ -79,8 +81,26 @@ def guess(columns: Columns) -> dict[str, JointGuess]:
             role.column.samples for role in roles.ports.values() if role.column.clock == main
         ]
         clock = usual_times(samples or [columns.clocks[main]])
-        found[name] = JointGuess(name, main, clock, ports)
+        found[name] = JointGuess(name, main, clock, ports, _temperature(columns.signals, name))
     return found
+
+
+def _temperature(columns: Sequence[Column], joint: str) -> str | None:
+    """Returns the column with the temperature of the motor of a joint, if only one can be meant: by
+    its name that of a motor, or of no other part."""
+    found = [
+        each
+        for each in columns
+        if each.meaning.quantity == "temperature"
+        and each.meaning.side in (None, "motor")
+        and joint in ("", "_".join(each.meaning.rest), "_".join(each.meaning.joints))
+        and _TEMPERATURES[0] < each.facts.low <= each.facts.high < _TEMPERATURES[1]
+    ]
+    named = [each for each in found if each.meaning.side == "motor"] or found
+    is_sure = len(named) == 1 and (
+        named[0].meaning.side or not set(named[0].meaning.rest) - {joint}
+    )
+    return named[0].name if is_sure else None
 
 
 def one_joint(log: Log, joints: Mapping[str, JointGuess], name: str) -> JointGuess:

@@ -22,7 +22,10 @@ from sigmahat.recording.units import TURN
 _ANGLES = ("theta", "q", "phi")
 _AS_OTHER = "CHECK: as the other position, with the gear that the motor moves farther by"
 _OF_ROS = "of a JointState of ROS (REP 103)"
-_OFFSET = 0.1  # ratio of the least torque to the range beyond which the column has an offset
+_LOADED = 0.1  # ratio of the least torque to the range beyond which the column is nowhere near 0
+_OFFSET = 1.0
+"""The same ratio beyond which integers around a power of 2 are those of a converter, whose middle
+is at no torque. The torque of a weight mostly varies by more."""
 _NEAR_0 = 0.02  # ratio of the least to the largest torque of what may be a magnitude
 _SAME_TURN = 0.02  # as _AS_FAR, where a gear may explain the ratio as well
 _AS_FAR = 0.15  # largest relative difference between the motions of motor and link after the gear
@@ -316,9 +319,17 @@ def _set_torque(ports: Mapping[str, PortGuess], roles: Roles) -> None:
         )
     elif port.unit is None and not facts.integer:
         _set_unit_of_torque("tau", port, column)
-    if facts.low > _OFFSET * (facts.high - facts.low):
+    extent = facts.high - facts.low
+    middle = 2.0 ** round(math.log2(max(facts.low + facts.high, 2.0) / 2))
+    is_around = facts.integer and facts.low < middle < facts.high
+    if is_around and facts.low > _OFFSET * extent:
         port.zero = _mean(column)
         notes["zero"] = "CHECK: mean of the column, which is nowhere near 0; its value at no torque"
+    elif max(facts.low, -facts.high) > _LOADED * extent:
+        notes["zero"] = (
+            f"CHECK: value of the column at no torque; its mean, {_mean(column):g}, may be that of "
+            "a weight"
+        )
     if roles.drive.sign < 0:
         port.sign = -1
         notes["sign"] = "CHECK: else the motor would gain power from friction"

@@ -51,7 +51,8 @@ def write(log: Log, columns: Columns, joints: Mapping[str, JointGuess]) -> str:
         for name, guess in joints.items()
     }
     if several:
-        return tomlkit.dumps(together({name: tomlkit.parse(text) for name, text in texts.items()}))
+        documents = {name: tomlkit.parse(text) for name, text in texts.items()}
+        return tomlkit.dumps(together(documents, configuration.FILL_IN))
     return next(iter(texts.values()))
 
 
@@ -93,6 +94,8 @@ def _listed(log: Log, columns: Columns, joints: Mapping[str, JointGuess]) -> Ite
     times = (first.time, *(port.time for port in first.ports.values()))
     what |= dict.fromkeys((time for time in times if time), "time")
     for name, joint in reversed(list(joints.items())):
+        if joint.temperature is not None:
+            what[joint.temperature] = f"{name} temperature".strip()
         ports = joint.ports.items()
         what |= {each.column: f"{name} ports.{port}".strip() for port, each in ports}
     lines = []

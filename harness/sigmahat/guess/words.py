@@ -10,7 +10,17 @@ from typing import Any
 
 import tomlkit
 
-_ORDER = ("other", "acceleration", "velocity", "position", "current", "torque", "time", "index")
+_ORDER = (
+    "other",
+    "temperature",
+    "acceleration",
+    "velocity",
+    "position",
+    "current",
+    "torque",
+    "time",
+    "index",
+)
 """Quantities by priority: the first one counts in a name with several, as "current position"."""
 _UNIT_OF = {
     **dict.fromkeys(("rad", "mrad", "deg", "turn", "arcmin", "arcsec"), "position"),
@@ -33,7 +43,8 @@ class Meaning:
     """Meaning of the name of a column. A field is None if the name contains no such word."""
 
     quantity: str | None
-    """time, index, position, deformation, velocity, acceleration, torque, current, or other."""
+    """time, index, position, deformation, velocity, acceleration, torque, current, temperature, or
+    other."""
     side: str | None  # motor, link, setting (what sets the stiffness), or sensor (of the torque)
     suggested: str | None  # motor or link, from a word that only suggests this side
     unit: str | None  # unit, as in configurations
@@ -72,7 +83,7 @@ def meaning(name: str) -> Meaning:
         quantity = "time"
     if unit.foreign is not None:
         quantity = unit.foreign
-    elif quantity not in ("other", "velocity", "acceleration"):
+    elif quantity not in ("other", "temperature", "velocity", "acceleration"):
         quantity = _UNIT_OF.get(unit.name or "", quantity)
     side = _first("side", ("sensor", "setting", "motor", "link"), entries)
     if "deformation" in roles:

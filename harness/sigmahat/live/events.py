@@ -121,6 +121,26 @@ class StiffnessChanged(Event):
 
 
 @dataclass(frozen=True, kw_only=True)
+class LimitPassed(Event):
+    """The stiffness has changed by more than the user allows, since the logs of `health`."""
+
+    kind: ClassVar[str] = "limit_passed"
+    joint: str
+    limit: float  # relative change that is allowed [1]
+    relative: float  # change since the first logs [1]
+    half_width: float  # half of its 95 % interval [1]
+    probability: float  # that the limit is passed [1]
+
+    @property
+    def in_words(self) -> str:
+        change = f"{100 * self.relative:+.2g} +- {100 * self.half_width:.2g} %"
+        return (
+            f"{self.joint}: the limit of the stiffness, {100 * self.limit:+g} %, is passed: "
+            f"{change} since the first logs"
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
 class Unreadable(Event):
     """The first message that cannot be read; more are only counted."""
 

@@ -17,6 +17,7 @@ from sigmahat.live.changes import ChangesOnLine
 from sigmahat.live.clock import Clock
 from sigmahat.live.events import Event, PositionJumped, in_seconds
 from sigmahat.live.jumps import Jumps
+from sigmahat.live.limits import Limits
 from sigmahat.live.messages import Columns
 from sigmahat.recording.configuration import INPUTS, Configuration
 from sigmahat.recording.counters import WholePeriods
@@ -81,7 +82,11 @@ class LiveJoint:
     """The estimator of one joint, and the samples that wait for its next tick."""
 
     def __init__(
-        self, configuration: Configuration, clocks: dict[str, Clock], learned: Learned | None
+        self,
+        configuration: Configuration,
+        clocks: dict[str, Clock],
+        learned: Learned | None,
+        limits: Limits | None = None,
     ) -> None:
         """clocks  by time column, "" for the time of arrival; missing clocks are added
 
@@ -89,6 +94,8 @@ class LiveJoint:
         """
         self.configuration, ports = configuration, configuration.ports
         self.name = configuration.joint or "joint"  # name for people and topics
+        of_results = configuration.joint or configuration.path.stem  # name in the results
+        self._limit = None if limits is None else limits.of(of_results, configuration.path)
         parameters = all_parameters(configuration)
         self.T = float(parameters["samplePeriod"])
         self._changes = ChangesOnLine(self.name, parameters, self.T)
@@ -207,7 +214,8 @@ class LiveJoint:
                 low, high = used or (math.inf, -math.inf)
                 self._used[name] = min(low, outputs[name]), max(high, outputs[name])
         given = {name: outputs[name] for name in GIVEN}
-        yield from self._jumped(t, values if outputs["valid"] else {})
+        has_data = outputs["valid"] or outputs["doubt"] == "Outlier"
+        yield from self._jumped(t, values if has_data else {})
         if any(each.offset for each in self._jumps.values()):
             # Nobody knows what the estimator learns now; a change would be one of the values.
             yield Estimated(self.name, t, given | {"confident": False, "doubt": JUMPED})
@@ -215,6 +223,10 @@ class LiveJoint:
         yield Estimated(self.name, t, given)
         if (change := self._changes.add(t, outputs)) is not None:
             yield change
+        if self._limit is not None and outputs["confident"]:
+            passed = self._limit.add(t - start, self.name, self._estimator, self._used)
+            if passed is not None:
+                yield replace(passed, t=t)
 
     def _jumped(self, t: float, values: Mapping[str, float]) -> Iterator[Event]:
         """Yields the first jump of each position: failed readings may jump often.

@@ -12,12 +12,13 @@ import tomlkit
 
 from sigmahat.live.clock import Clock
 from sigmahat.live.events import NotWritten, SenderRestarted
+from sigmahat.live.limits import Limits
 from sigmahat.live.live_joint import LiveJoint, News
 from sigmahat.live.messages import Columns
 from sigmahat.live.recording import Recording
 from sigmahat.recording import several_joints as of_file
 from sigmahat.recording.configuration import joints_of, read_configuration, read_document
-from sigmahat.result.learned import LEARNED, read_learned
+from sigmahat.result.learned import LEARNED, read_learned, state_of
 
 ARRIVAL = "arrival"  # column for messages without a stamp: time of arrival [ns] since 1970
 _MOST = 100  # recordings; a sender can start again as often as it likes
@@ -26,7 +27,13 @@ _MOST = 100  # recordings; a sender can start again as often as it likes
 class Session:
     """The joints of a configuration, with their estimators and their recording."""
 
-    def __init__(self, config: Path, out: Path, start_from: Path | None = None) -> None:
+    def __init__(
+        self,
+        config: Path,
+        out: Path,
+        start_from: Path | None = None,
+        limits: Limits | None = None,
+    ) -> None:
         """out  folder to write into, which exists
 
         Raises LogError for settings that do not fit.
@@ -35,9 +42,9 @@ class Session:
         self.clocks: dict[str, Clock] = {}  # clocks by time column; "" for the time of arrival
         self.joints: list[LiveJoint] = []
         for name in joints_of(self._document, config):
-            state = start_from / name if start_from and start_from.is_dir() else start_from
-            learned = read_learned(state) if state else None
-            self.joints.append(LiveJoint(read_configuration(config, name), self.clocks, learned))
+            learned = read_learned(state_of(start_from, name)) if start_from else None
+            configuration = read_configuration(config, name)
+            self.joints.append(LiveJoint(configuration, self.clocks, learned, limits))
         ports = [port.port.column for joint in self.joints for port in joint.ports.values()]
         self.columns = [name for name in dict.fromkeys([*self.clocks, *ports]) if name]
         """Columns of the messages that are used."""

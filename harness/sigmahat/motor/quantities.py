@@ -10,6 +10,10 @@ from sigmahat.motor.equation import COULOMB_VELOCITY
 from sigmahat.recording import notes
 from sigmahat.recording.notes import Note
 
+ACCEPTED = 3.0
+"""Standard deviations of a prior up to which FilteredRegression accepts motor data without doubt
+(SH_OUTSIDE_PRIOR in `c/filtered_regression/report.c`)."""
+
 WIDE = 1.0
 """Relative prior of motor data that the log does not determine. With a prior of 0, motor data count
 as exact in FilteredRegression; with 1, values up to 4 times the given value are accepted."""

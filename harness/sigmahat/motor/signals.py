@@ -45,9 +45,9 @@ class Signals:
         return replace(self, tau=(self.tau + before) / 2, held=False)
 
 
-def shortest(T: float) -> int:
-    """Returns the least number of samples of a stretch."""
-    return max(round((2 * EDGE + 2 * BLOCK) / T), _LEAST)
+def shortest(T: float, blocks: int = 2) -> int:
+    """Returns the least number of samples of a stretch, with this number of blocks."""
+    return max(round((2 * EDGE + blocks * BLOCK) / T), _LEAST)
 
 
 def signals_of(

@@ -11,7 +11,7 @@ from tomlkit.items import Item
 from sigmahat.files import toml_file
 from sigmahat.fmi.model import installed_model
 from sigmahat.motor.equation import MOTOR
-from sigmahat.motor.quantities import WIDE, Identified
+from sigmahat.motor.quantities import ACCEPTED, WIDE, Identified
 from sigmahat.recording import several_joints
 from sigmahat.recording.configuration import (
     ANOTHER_ROBOT,
@@ -82,7 +82,7 @@ def update(document: tomlkit.TOMLDocument, identified: Identified, joint: str = 
     parameters = section.setdefault("parameters", tomlkit.table())
     unknown = {n: value for n, value in _unknown(identified).items() if n not in given}
     comments = {name: comment for name, (_, comment) in unknown.items()}
-    wide = {n: std for n, std in _wide_priors(identified, comments).items() if not given.get(n)}
+    wide = {n: std for n, std in _wide_priors(identified, unknown).items() if not given.get(n)}
     comments |= {name: WIDE_PRIOR for name in wide if name not in given}
     values |= {name: value for name, (value, _) in unknown.items()} | wide
     for name, value in values.items():
@@ -124,20 +124,27 @@ def _unknown(identified: Identified) -> dict[str, tuple[float, str]]:
     return values
 
 
-def _wide_priors(identified: Identified, comments: Mapping[str, str]) -> dict[str, float]:
+def _wide_priors(
+    identified: Identified, unknown: Mapping[str, tuple[float, str]]
+) -> dict[str, float]:
     """Chooses priors of the motor data that are not determined, by parameter.
 
-    comments  comments of parameters that the user has not set; a prior WIDE around the middle of
-              an interval contains the interval
+    unknown  values of parameters that the user has not set, with their comments. A prior WIDE
+             around the middle of the interval of the fits contains this interval; where the
+             interval that the user reads reaches further, the prior lets the estimator accept it
     """
     undetermined = {name: q for name, q in identified.quantities.items() if not q.determined}
     priors = {}
     for name in ("B", "D_theta"):
-        if name in undetermined:
-            not_yours = comments.get(f"motor.{name}") == NOT_YOURS
-            priors[f"prior.{name}"] = ANOTHER_ROBOT if not_yours else WIDE
+        if name not in undetermined:
+            continue
+        value, comment = unknown.get(f"motor.{name}", (0.0, ""))
+        priors[f"prior.{name}"] = ANOTHER_ROBOT if comment == NOT_YOURS else WIDE
+        if comment == _MIDDLE:
+            furthest = undetermined[name].interval[1] / value - 1
+            priors[f"prior.{name}"] = max(WIDE, furthest / ACCEPTED)
     D_theta = undetermined.get("D_theta")
-    if comments.get("motor.D_theta") == _MIDDLE:
+    if unknown.get("motor.D_theta", (0.0, ""))[1] == _MIDDLE:
         D_theta = None
     if D_theta is not None and math.isfinite(D_theta.half_width) and identified.D_theta > 0:
         # Encoders that are read at different times look like positive or negative friction.

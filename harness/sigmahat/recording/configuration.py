@@ -1,7 +1,7 @@
 """Reads the configuration of a log: columns for the ports, and parameters of the estimator.
 
-docs/how-to-log.md has an example, and several_joints.py describes the file for several joints. The
-format TOML is easy to read, and tomlkit keeps the comments when identify writes the file.
+docs/log-reference.md has an example, and several_joints.py describes the file for several joints.
+The format TOML is easy to read, and tomlkit keeps the comments when identify writes the file.
 """
 
 from collections.abc import Mapping
@@ -120,6 +120,15 @@ class Time:
 
 
 @dataclass(frozen=True)
+class Temperature:
+    """The temperature of the motor, for `sigmahat health`."""
+
+    __pydantic_config__ = _NO_OTHER_KEYS
+
+    column: str  #: Name of the column in the log, in degC.
+
+
+@dataclass(frozen=True)
 class Configuration:
     """The contents of a configuration file."""
 
@@ -128,6 +137,7 @@ class Configuration:
     ports: Mapping[str, Port]  #: Ports by input of `StiffnessEstimator`.
     parameters: Mapping[str, Value]  #: Start values of `StiffnessEstimator`, by its names.
     joint: str = ""  #: Name of the joint in a file of several joints.
+    temperature: str | None = None  #: Column with the temperature of the motor [degC].
 
     @property
     def inputs(self) -> Mapping[str, Port]:
@@ -140,6 +150,7 @@ class Configuration:
         """Names of the columns of the log that are used, each once."""
         ports = self.ports.values()
         named = [self.time.column, *(p.column for p in ports), *(p.time for p in ports)]
+        named.append(self.temperature)
         return [*dict.fromkeys(name for name in named if name)]
 
     def need_ports(self, modality: str) -> None:
@@ -168,6 +179,7 @@ class _ConfigurationFile:
     time: Time = field(default_factory=Time)
     parameters: dict[str, Any] = field(default_factory=dict)
     identified: Any = None  # results of identify, for people to read
+    temperature: Temperature | None = None
 
 
 def read_configuration(path: str | Path, joint: str = "") -> Configuration:
@@ -219,7 +231,8 @@ def checked_configuration(
             f"{'remove' if 'q' in file.ports else 'add'} one of them"
         )
     parameters = dict(toml_file.dotted(file.parameters))
-    return Configuration(path, file.time, file.ports, parameters, joint)
+    column = file.temperature.column if file.temperature else None
+    return Configuration(path, file.time, file.ports, parameters, joint, column)
 
 
 def with_units(ports: Any) -> Any:
@@ -288,6 +301,7 @@ def read_document(path: Path) -> tomlkit.TOMLDocument:
         raise LogError(f"{path}: not TOML ({cause(error)})") from error
 
 
+_SECTIONS: Mapping[str, type] = {"time": Time, "temperature": Temperature}
 _NO_PORTS = "no [ports.*]; `sigmahat init LOG` writes a file to start from"
 _MISSPELT = "unexpected_keyword_argument"
 _KINDS = {"string_type": "text", "float_type": "a number", "finite_number": "a finite number"}
@@ -298,7 +312,7 @@ def _explain(error: ErrorDetails) -> str:
     what, where = error["type"], ".".join(map(str, error["loc"]))
     section, _, key = where.rpartition(".")
     if what == _MISSPELT:
-        kind = Port if "." in section else Time if section else _ConfigurationFile
+        kind = Port if "." in section else _SECTIONS.get(section, _ConfigurationFile)
         place = f"key in [{section}]" if section else "section"
         return unknown(place, key, [each.name for each in fields(kind)])
     if what == "missing":

@@ -1,6 +1,6 @@
 """Splits and combines configurations of several joints, in which common values stand only once.
 
-docs/how-to-log.md has an example. A configuration of one joint has no section [joints], and the
+docs/log-reference.md has an example. A configuration of one joint has no section [joints], and the
 name of the joint is "".
 """
 
@@ -55,10 +55,13 @@ def of_joint(document: tomlkit.TOMLDocument, name: str) -> tomlkit.TOMLDocument:
     return own
 
 
-def together(joints: Mapping[str, tomlkit.TOMLDocument]) -> tomlkit.TOMLDocument:
+def together(joints: Mapping[str, tomlkit.TOMLDocument], fill_in: str) -> tomlkit.TOMLDocument:
     """Combines the configurations of several joints; common values stand once in the document.
 
     Comments on separate lines are taken from the configuration of the first joint.
+
+    fill_in  word in comments on values that the user has to fill in: those of ports and motors are
+             not common, because joints have gears, encoders and motors of their own
     """
     first = next(iter(joints.values()))
     values = [items(each) for each in joints.values()]
@@ -67,10 +70,13 @@ def together(joints: Mapping[str, tomlkit.TOMLDocument]) -> tomlkit.TOMLDocument
         for place, item in values[0].items()
         if all(place in each and each[place] == item for each in values[1:])
         and all(each[place].trivia.comment == item.trivia.comment for each in values[1:])
+        and not (_is_of_hardware(place) and fill_in in item.trivia.comment)
     }
     document = tomlkit.parse(tomlkit.dumps(first))
     for place in values[0].keys() - shared:
         remove(document, place)
+    if not document.get("temperature", True):  # which another joint need not have
+        del document["temperature"]
     sections = tomlkit.table(is_super_table=True)
     for name, own in zip(joints, values, strict=True):
         section = tomlkit.table(is_super_table=True)
@@ -80,6 +86,10 @@ def together(joints: Mapping[str, tomlkit.TOMLDocument]) -> tomlkit.TOMLDocument
         sections[name] = section
     document[JOINTS] = sections
     return document
+
+
+def _is_of_hardware(place: Place) -> bool:
+    return place[0] == "ports" or place[-1].startswith("motor.")
 
 
 def section(document: tomlkit.TOMLDocument, name: str) -> MutableMapping[str, Any]:

@@ -2,12 +2,9 @@
 
 import os
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from urllib.parse import quote
-
-from bokeh.embed import components
-from bokeh.resources import Resources
 
 from sigmahat.experiments.records import NAME as RECORDS
 from sigmahat.files.templates import environment
@@ -15,7 +12,7 @@ from sigmahat.report.contents import Contents, TextTable, of_file
 from sigmahat.report.from_log import from_joints, from_log
 from sigmahat.result.estimate import JOINTS, read_joints
 from sigmahat.result.log_panels import quantity_panels, reduce, sampling, stiffness_panels
-from sigmahat.show.plots import plots
+from sigmahat.show.panel import Panel
 from sigmahat.show.style import PAGE
 from sigmahat.studies.reproduce_results import SEEDS, TABLE, TIME, read_result_files
 from sigmahat.studies.sweep_panels import against_parameters, distributions
@@ -101,7 +98,7 @@ def report(folder: Path, out: Path) -> str:
     }
     for name, contents in kinds.items():
         if (folder / name).is_file():
-            return _page(contents(folder), out)
+            return page(contents(folder), out)
     if (folder / RECORDS).is_file() and not any(folder.glob("*.csv")):
         raise ValueError(f"{folder}: incomplete sweep; run the command of the sweep again")
     raise ValueError(
@@ -110,21 +107,34 @@ def report(folder: Path, out: Path) -> str:
     )
 
 
-def _page(contents: Contents, out: Path) -> str:
+def page(contents: Contents, out: Path) -> str:
+    """Creates the HTML of a report; out: its file."""
     links = [(each.text, _address(each.path, out)) for each in contents.links]
     panels, first = [*contents.answer, *contents.panels], len(contents.answer)
-    script, divs = components(plots(panels, contents.marks, contents.whole)) if panels else ("", [])
+    library, script, divs = _interactive(panels, contents) if panels else ("", "", [])
     shown = list(zip(range(len(panels)), panels, divs, strict=True))
-    page = environment(Path(__file__).parent).get_template("page.html")
-    return page.render(
+    template = environment(Path(__file__).parent).get_template("page.html")
+    return template.render(
         contents=contents,
         links=links,
         style=PAGE.read_text(encoding="utf-8"),
         answer=shown[:first],
         plots=shown[first:],
-        library=Resources(mode="inline", components=["bokeh"]).render() if panels else "",
+        library=library,
         script=script,
     )
+
+
+def _interactive(panels: Sequence[Panel], contents: Contents) -> tuple[str, str, Sequence[str]]:
+    """Returns Bokeh, the script of the plots of panels, and an element of HTML for each."""
+    # Loading Bokeh takes longer than a page without plots.
+    from bokeh.embed import components
+    from bokeh.resources import Resources
+
+    from sigmahat.show.plots import plots
+
+    script, divs = components(plots(panels, contents.marks, contents.whole))
+    return Resources(mode="inline", components=["bokeh"]).render(), script, divs
 
 
 def _address(path: Path, out: Path) -> str:

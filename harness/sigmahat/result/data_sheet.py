@@ -13,9 +13,11 @@ from sigmahat.fmi.model import Value, installed_model
 from sigmahat.recording import several_joints
 from sigmahat.recording.configuration import Configuration
 from sigmahat.result import sheet
-from sigmahat.result.curve import NORMAL_95, Curve
+from sigmahat.result.curve import NORMAL_95, Branch, Curve
+from sigmahat.result.curve_of_log import Reach
 from sigmahat.result.replayed_log import Replay
 from sigmahat.result.stored import FmuId, Range
+from sigmahat.result.together import together
 
 UNITS = {
     "bias": "N.m",
@@ -59,7 +61,7 @@ _AMPLITUDE_95 = 2.4477
 """95 % quantile of the amplitude of two normal coordinates with std 1 (Rayleigh)."""
 
 
-def data_sheet(replay: Replay, curve: Curve) -> sheet.Sheet:
+def data_sheet(replay: Replay, curve: Curve, recording: sheet.Recording) -> sheet.Sheet:
     """Creates the data sheet from the estimator at the end of a replay, and from its curve."""
     parameters, configuration = replay.parameters, replay.configuration.path
     identified = _identified(replay.configuration)
@@ -75,6 +77,8 @@ def data_sheet(replay: Replay, curve: Curve) -> sheet.Sheet:
         sigmahat=version(),
         units=sheet.UNITS,
         fmu=FmuId.of(installed_model("StiffnessEstimator")),
+        joint=replay.configuration.joint,
+        recorded=recording,
         logs=replay.logs,
         configuration=sheet.Source(
             str(configuration), sha256(configuration) if configuration.is_file() else None
@@ -96,7 +100,13 @@ def data_sheet(replay: Replay, curve: Curve) -> sheet.Sheet:
         ),
         start_values=start,
         check=sheet.Check(sigma=fresh.output("sigma"), tau_e=fresh.output("tau_e")),
+        together=together(replay.estimator, [_reach(each) for each in curve.branches]),
+        excitation=replay.excitation.excitation,
     )
+
+
+def _reach(branch: Branch) -> Reach:
+    return Reach(branch.set_point, branch.reach)
 
 
 def _points(curve: Curve) -> list[sheet.Stiffness]:

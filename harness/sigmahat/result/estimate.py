@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import asdict, dataclass, replace
+from datetime import datetime
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,7 @@ from sigmahat.recording import notes
 from sigmahat.recording.configuration import Configuration
 from sigmahat.recording.log import Log
 from sigmahat.recording.notes import NoSignal, RecordingNote
+from sigmahat.recording.recorded import recorded, temperature
 from sigmahat.recording.replay import OUTPUTS
 from sigmahat.recording.several_joints import NAMES, is_name
 from sigmahat.result import sheet
@@ -155,6 +157,7 @@ def estimate(
     start_from: str | Path | None = None,
     mcap: bool = False,
     findings: list[dict[str, Any]] | None = None,
+    given: datetime | None = None,
 ) -> Estimate:
     """Replays the log. Without a folder the outputs at all ticks are in the result, as `series`.
 
@@ -166,6 +169,7 @@ def estimate(
 
     progress is called from time to time with the thousandths of the log done since the last call.
     With start_from, a folder of results or its state.json, the estimator starts from this state.
+    `given` is the time of the recording, if the log does not have it.
 
     Raises LogError if log, configuration and start_from do not fit together, and
     ModuleNotFoundError without the package mcap.
@@ -191,7 +195,14 @@ def estimate(
         replay.run(lambda outputs: [add(outputs) for add in adds], progress, digest)
     write_learned(replay.estimator, replay.logs, folder / LEARNED.file)
     answered = replay.answer()
-    write_json(asdict(data_sheet(replay, answered.curve)), folder / sheet.FORMAT.file)
+    at = recorded(log, configuration, given)
+    recording = sheet.Recording(
+        time=at.time.isoformat() if at.time else None,
+        source=at.source.value,
+        temperature=temperature(log, configuration),
+    )
+    contents = data_sheet(replay, answered.curve, recording)
+    write_json(asdict(contents), folder / sheet.FORMAT.file)
     result = _result(replay, answered.curve)
     write_curve(answered.curve, folder / CURVE)
     write_points(answered.points, folder / POINTS)
@@ -260,7 +271,10 @@ def summary(result: Estimate) -> str:
     std = "for which the method gives no standard deviation"
     if p["method"] == "FilteredRegression":
         std = f"standard deviation {result.sigma_std:.2g} N.m/rad"
-    said = [*continued_in_words(result.learned_from), *(note.in_words for note in result.notes)]
+    said = [
+        *continued_in_words(result.learned_from),
+        *(note.in_words for note in result.notes),
+    ]
     lines = [f"{result.log}", *(f"  {sentence}" for sentence in said), ""]
     lines += [
         f"method {p['method']}, modality {p['modality']}, T = {result.T:g} s, "

@@ -73,7 +73,7 @@ def headline(curve: Curve, confidence: Confidence, changes: Sequence[StiffnessCh
         text = ", ".join(f"{_plus_minus(each)} at {each.set_point:.4g}" for each in chosen)
         text += " (N.m/rad at set-points)"
     else:
-        text = _in_one_line(chosen[0])
+        text = _in_one_line(chosen[0], confidence.doubt is None)
     if curve.claims:
         text += f", {confidence.in_words}"
     return "; ".join([text, *(change.in_words for change in told(changes, curve))])
@@ -100,9 +100,15 @@ def _plus_minus(branch: Branch) -> str:
     return text if is_told(branch) else f"cannot tell ({text})"
 
 
-def _in_one_line(branch: Branch) -> str:
-    """Formats the stiffness in the middle of the data, and its range if wider than the interval."""
+def _in_one_line(branch: Branch, is_confident: bool) -> str:
+    """Formats the stiffness in the middle of the data, and its range if wider than the interval.
+
+    If the middle is in a dead zone, the confidence is that of the spring beyond the dead zone: then
+    the stiffness is that of the deformation at which it is known best.
+    """
     phi, sigma, interval = stiffness_in_the_middle(branch)
+    if is_confident and not is_told(branch) and (known := _best_known(branch)):
+        return f"{known}, cannot tell at {phi:.3g} rad"
     half = 0.0 if interval is None else (interval[1] - interval[0]) / 2
     text = f"{_plus_minus(branch)} N.m/rad at {phi:.3g} rad"
     within = branch.sigma[branch.within]
@@ -110,3 +116,16 @@ def _in_one_line(branch: Branch) -> str:
         low, high = branch.reach
         text += f" ({within.min():.4g} to {within.max():.4g} from {low:.3g} to {high:.3g} rad)"
     return text
+
+
+def _best_known(branch: Branch) -> str | None:
+    """Formats the stiffness whose relative interval is narrowest; None if none excludes 0."""
+    ends = branch.stiffness_interval()
+    if ends is None:
+        return None
+    half = (ends[1] - ends[0]) / 2
+    is_known = branch.within & (half < np.abs(branch.sigma))
+    if not np.any(is_known):
+        return None
+    at = min(np.flatnonzero(is_known), key=lambda i: half[i] / abs(branch.sigma[i]))
+    return f"{branch.sigma[at]:.4g} +- {half[at]:.3g} N.m/rad at {branch.phi[at]:.3g} rad"

@@ -66,6 +66,23 @@ def write_learned(estimator: Estimator, logs: Sequence[LearnedLog], path: Path) 
     write_json(asdict(contents), path)
 
 
+def state_of(results: Path, joint: str) -> Path:
+    """Returns where the state of a joint is: the file itself, or its place in a folder of results.
+
+    joint  name; "" for a single joint
+
+    Raises LogError for a folder without one for this joint.
+    """
+    if not results.is_dir() or not joint:
+        return results
+    if not (results / joint).is_dir():
+        raise LogError(
+            f"{results}: expected the results of several joints, with a folder {joint}, got none; "
+            f"name the folder above, or a {LEARNED.file}"
+        )
+    return results / joint
+
+
 def read_learned(path: Path) -> Learned:
     """Reads `state.json`, given as the file or as a folder of results.
 

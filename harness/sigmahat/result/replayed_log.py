@@ -26,6 +26,7 @@ from sigmahat.result.curve_of_log import (
     since_change,
     spread,
 )
+from sigmahat.result.excitation import ExcitationSums
 from sigmahat.result.headline import Confidence, StiffnessChange
 from sigmahat.result.learned import Learned, continue_from
 from sigmahat.result.stored import LearnedLog, Range
@@ -117,11 +118,14 @@ def coefficients(parameters: Mapping[str, Value]) -> list[str]:
     return [f"eta[{i},{j}]" for i in range(n) for j in range(m)]
 
 
+_FOLLOWED = 1.0  # time in which the estimate follows a change [s]
+
+
 class Changes:
     """Collects changes of the stiffness from the outputs of a replay.
 
     The estimator may start again several times before the estimate follows a change. A further
-    change counts only after a confident estimate since the last change.
+    change counts only after an estimate that is confident a second after the last change or later.
     """
 
     def __init__(self, parameters: Mapping[str, Value], T: float) -> None:
@@ -132,6 +136,7 @@ class Changes:
         self._powers = np.repeat(powers_of_phi(bool(parameters["rls.symmetric"]), n), m)
         self._powers_of_set_point = np.tile(np.arange(m), n)
         self._T, self._ticks, self._age, self._followed = T, 0, -1.0, True
+        self._begin = 0  # tick of the last change
         self._eta: NDArray[np.float64] | None = None  # at the last confident tick since a change
         self._at = 0.0, 0.0  # deformation and set-point of the last change
         self._before: float | None = None  # stiffness before the last change, at this point
@@ -147,10 +152,13 @@ class Changes:
                 self._at = float(outputs["phi"][begin]), float(outputs["setPoint"][begin])
                 self._before = None if self._eta is None else self._stiffness(self._eta)
                 self._eta, self._followed = None, False
+                self._begin = self._ticks + begin
                 self.found.append(StiffnessChange(self._T * (self._ticks + begin), None))
             inside = confident[(confident >= begin) & (confident < end)]
             if len(inside):
-                self._eta, self._followed = eta[inside[-1]], True
+                self._eta = eta[inside[-1]]
+                since = self._ticks + inside[-1] - self._begin
+                self._followed = self._followed or self._T * since >= _FOLLOWED
                 if self._before is not None and self._before > 0:
                     relative = self._stiffness(self._eta) / self._before - 1
                     self.found[-1] = StiffnessChange(self.found[-1].t, relative)
@@ -188,6 +196,7 @@ class Replay:
         self.statistics = ReplayStatistics(len(self.samples.values))
         self.changes = Changes(self.parameters, self.samples.T)
         """Changes of the stiffness in the replayed part of the log."""
+        self.excitation = ExcitationSums(self.samples.T)  # of the replayed part of the log
         self.logs = [] if learned is None else list(learned.logs)
         """Logs that the estimator has processed; at the end also the present log."""
 
@@ -206,6 +215,7 @@ class Replay:
             self.changes.add(recorded)
             outputs = {name: recorded[name] for name in RECORDED}
             statistics.add(outputs)
+            self.excitation.add(outputs)
             add(outputs)
             now = done + len(outputs["valid"])
             progress(1000 * now // ticks - 1000 * done // ticks)

@@ -6,16 +6,19 @@ Numbers are written with all digits, so that a reader gets exactly the estimates
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from datetime import datetime
 from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import AfterValidator
+from pydantic import AfterValidator, Field
 
 from sigmahat.estimator.estimator import Estimator
+from sigmahat.estimator.instances import QUANTITIES
 from sigmahat.estimator.powers import powers_of_phi
 from sigmahat.fmi.model import Value, installed_model
 from sigmahat.fmi.unknown_name import unknown
+from sigmahat.result.excitation import Excitation
 from sigmahat.result.stored import (
     NO_OTHER_KEYS,
     Digest,
@@ -47,6 +50,7 @@ WORDS = {
     "hysteresis": "hysteresis",
 }
 """Descriptions of the parameters and the effects of the joint for users."""
+_ROUNDING = 1e-6  # of a covariance, relative
 _HIGHEST = 30  # power; those of the estimator are far below
 _NEEDED = ("gamma", "B", "D_theta")  # parameters of every joint
 _CURVE = "rls.eta_0["
@@ -157,6 +161,86 @@ class Check:
     tau_e: float  # [N.m]
 
 
+def _is_time(text: str) -> str:
+    """Raises ValueError for a text that is no time with a zone."""
+    time = datetime.fromisoformat(text)
+    if time.tzinfo is None:
+        raise ValueError("expected a time with its zone, such as 2026-03-02T08:15:00+00:00")
+    return text
+
+
+@dataclass(frozen=True)
+class Recording:
+    """The recording of the last log."""
+
+    __pydantic_config__ = NO_OTHER_KEYS
+
+    time: Annotated[Text, AfterValidator(_is_time)] | None
+    """Of its first sample, by ISO 8601 with a zone; None if it is unknown."""
+    source: Annotated[Text, form("given|log|name|unknown", "given, log, name or unknown")]
+    """Where the time comes from: the user, the clock of the log, a date in the name of the file."""
+    temperature: float | None  # of the motor, mean [degC]; None if it was not measured
+
+
+@dataclass(frozen=True)
+class Prior:
+    """What the estimator was told of a quantity before the first log."""
+
+    __pydantic_config__ = NO_OTHER_KEYS
+
+    mean: float
+    std: Annotated[float, Field(ge=0)]  # standard deviation; 0: the quantity is taken as exact
+
+
+@dataclass(frozen=True)
+class Together:
+    """Estimates at the end with their covariance, which a comparison with other logs needs.
+
+    The first values are the stiffness at the points; the quantities follow. The covariance does not
+    contain the gain of the torque. A quantity with variance 0 is taken as exact or absent.
+    """
+
+    __pydantic_config__ = NO_OTHER_KEYS
+
+    phi: list[float]  # deformations of the points, in the range of the data [rad]
+    set_point: list[float]  # set-points of the points [1]
+    quantities: list[Name]
+    values: list[float]
+    per_gain: list[float]  # change of each value per relative change of the gain of the torque
+    covariance: list[list[float]]
+    prior: dict[Name, Prior]  # of the quantities that have one mean and one standard deviation
+
+    def __post_init__(self) -> None:
+        """Raises ValueError for sizes that do not fit."""
+        size = len(self.phi) + len(self.quantities)
+        rows = [len(row) for row in self.covariance]
+        if len(self.set_point) != len(self.phi) or rows != [size] * size:
+            raise ValueError(f"expected a covariance of {size} x {size} numbers")
+        if not len(self.values) == len(self.per_gain) == size:
+            raise ValueError(f"expected {size} values, and as many changes per gain")
+
+
+def consistent(together: Together) -> Together:
+    """Returns estimates that an estimator can have written.
+
+    Raises ValueError without a point, for other quantities than QUANTITIES, and for a covariance
+    that is not symmetric and positive semi-definite.
+    """
+    if not together.phi or together.quantities != list(QUANTITIES):
+        raise ValueError(f"expected one or more points, and the quantities {', '.join(QUANTITIES)}")
+    P = np.array(together.covariance)
+    variances = np.diag(P)
+    scale = np.sqrt(np.where(variances > 0, variances, 1.0))
+    correlation = P / np.outer(scale, scale)
+    is_possible = float(np.min(variances)) >= 0 and np.abs(P - P.T).max() <= _ROUNDING * P.max()
+    if not is_possible or np.linalg.eigvalsh(correlation)[0] < -_ROUNDING:
+        raise ValueError(
+            "expected a covariance that is symmetric and positive semi-definite, with variances of "
+            f"0 or more; the least variance is {variances.min():.3g}"
+        )
+    return together
+
+
 def _parameters_of_a_joint(parameters: dict[str, Parameter]) -> dict[str, Parameter]:
     """Raises ValueError for names that no joint has, and for missing ones."""
     for name in _NEEDED:
@@ -191,6 +275,8 @@ class Sheet:
     units: dict[Word, Unit]
     """Units of the numbers with these keys in the file; an interval has the unit of its value."""
     fmu: FmuId
+    joint: Text  # name of the joint in the configuration; "" if this is of one joint
+    recorded: Recording
     logs: list[LearnedLog]  # logs that the estimator has processed, in this order
     configuration: Source
     method: Word
@@ -207,9 +293,12 @@ class Sheet:
     start_values: Annotated[dict[Name, bool | int | float | Text], AfterValidator(_of_an_estimator)]
     """Start values of the FMU by name, with which the FMU continues from the estimate."""
     check: Check
+    together: Annotated[Together, AfterValidator(consistent)] | None
+    """Estimates with their covariance, for `sigmahat health`; None if the method gives none."""
+    excitation: Excitation  # how the last log moved the joint
 
 
-FORMAT = Format("joint.json", "sigmahat joint data sheet", 1, Sheet)  # format of the file
+FORMAT = Format("joint.json", "sigmahat joint data sheet", 2, Sheet)  # format of the file
 
 
 def origin(sheet: Sheet) -> Iterator[str]:

@@ -6,6 +6,7 @@ import json
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import Annotated, Any, Generic, TypeVar
 
@@ -20,12 +21,14 @@ NO_OTHER_KEYS = ConfigDict(extra="forbid", allow_inf_nan=False)
 Text = Annotated[str, Strict()]  # any, such as a path
 
 _LONGEST_WORD = 80  # characters of a text that has a form
+_MANY = 1000  # texts, most of which are the same in each result of a table
 
 
 def form(pattern: str, expected: str) -> AfterValidator:
     """Makes a check of the form of a text; ``expected`` says what was expected."""
     whole = re.compile(pattern, re.ASCII)
 
+    @lru_cache(_MANY)
     def checked(text: str) -> str:
         if len(text) > _LONGEST_WORD or not whole.fullmatch(text):
             raise PydanticCustomError("form", "expected {what}", {"what": expected})

@@ -68,7 +68,7 @@ class Setup:
     @property
     def text_of_file(self) -> str:
         """The configuration of all joints, in the form for the file."""
-        return tomlkit.dumps(together(self.joints)) if len(self.joints) > 1 else self.text
+        return tomlkit.dumps(together(self.joints, FILL_IN)) if len(self.joints) > 1 else self.text
 
     @property
     def is_ready(self) -> bool:
