@@ -27,15 +27,15 @@ class Condition:
 
 
 CONDITIONS: Mapping[str, Condition] = {
-    "healthy": Condition(HEALTHY, 24),
-    "one motion": Condition(HEALTHY, 10, motion=1),
-    "another motion": Condition(HEALTHY, 10, motion=2),
-    "payload": Condition(Wear(payload=2.0), 10),
-    "friction": Condition(Wear(friction=0.3), 10),
-    "gain": Condition(Wear(gain=-0.05), 10),
-    **{f"spring {share}": Condition(Wear(spring=share), 8) for share in (-0.025, -0.05)},
-    **{f"spring {share}": Condition(Wear(spring=share), 8) for share in (-0.075, -0.1)},
-    **{f"gap {gap:g}": Condition(Wear(gap=gap), 6) for gap in (2e-4, 4e-4, 6e-4, 8e-4, 1e-3)},
+    "healthy": Condition(HEALTHY, 250),
+    "one motion": Condition(HEALTHY, 30, motion=1),
+    "another motion": Condition(HEALTHY, 30, motion=2),
+    "payload": Condition(Wear(payload=2.0), 30),
+    "friction": Condition(Wear(friction=0.3), 30),
+    "gain": Condition(Wear(gain=-0.05), 30),
+    **{f"spring {share}": Condition(Wear(spring=share), 30) for share in (-0.025, -0.05)},
+    **{f"spring {share}": Condition(Wear(spring=share), 30) for share in (-0.075, -0.1)},
+    **{f"gap {gap:g}": Condition(Wear(gap=gap), 10) for gap in (2e-4, 4e-4, 6e-4, 8e-4, 1e-3)},
 }
 
 
