@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from sigmahat.motor.equation import COULOMB_VELOCITY, Form, explained, residual
+from sigmahat.motor.equation import COULOMB_VELOCITY, Equations, Form, explained, residual
 from sigmahat.motor.hypotheses.hypothesis import Evidence, Hypothesis
 from sigmahat.motor.log_view import LogView
 from sigmahat.motor.noise import low_pass, variance
@@ -23,7 +23,10 @@ _UNEXPLAINED = 0.02
 sixty such logs, none left more than 0.008, also with wrong configurations. Of six logs of an
 industrial robot, five left 0.024 to 0.084."""
 
-_IN_MOTION = 0.1  # least share of a log in motion from which it is judged by this part alone
+_PER_COEFFICIENT = 3
+"""Least number of independent samples of each coefficient in motion, from which a log is judged by
+its motion alone: with fewer, the coefficients explain any torque. Two runs of an industrial robot,
+of 10 s, have two each, and the model then seems to fit."""
 _INDEPENDENT = 20  # least number of independent samples of each of two springs of four powers
 
 
@@ -37,7 +40,7 @@ def misfit(view: LogView, fit: QuickFit) -> Evidence | None:
 
     Returns the torque that is left, divided by the torque without its mean, both RMS [1].
     """
-    system = with_all_corrections(_in_motion(view, fit.form), fit.form)
+    system = _in_motion(view, fit.form)
     share = 1 - explained(system)
     noise = max(variance(piece.tau) for piece in view.pieces)
     if share < _UNEXPLAINED or residual(system) < noise * int(system.rows.sum()):
@@ -48,12 +51,14 @@ def misfit(view: LogView, fit: QuickFit) -> Evidence | None:
     return Evidence(math.sqrt(share), [Hypothesis(f"ports.{port}.column", None)])
 
 
-def _in_motion(view: LogView, form: Form) -> LogView:
-    """Returns a log without the times at rest; the same log if hardly anything is left."""
+def _in_motion(view: LogView, form: Form) -> Equations:
+    """Returns the equations without the times at rest; all of them if hardly any would be left."""
     parts = [part for piece in view.pieces for part in _moving(piece, view.T, form)]
-    kept = sum(len(part.theta) for part in parts)
-    is_enough = kept > _IN_MOTION * sum(len(piece.theta) for piece in view.pieces)
-    return replace(view, pieces=parts) if is_enough else view
+    independent = 2 * form.f_0 * view.T * sum(len(part.theta) for part in parts)
+    whole = with_all_corrections(view, form)
+    if independent < _PER_COEFFICIENT * len(whole.names):
+        return whole
+    return with_all_corrections(replace(view, pieces=parts), form)
 
 
 def _moving(piece: Signals, T: float, form: Form) -> Iterator[Signals]:
