@@ -8,10 +8,12 @@ import numpy as np
 import pytest
 
 from joint_results import SCATTER, START, TrueJoint, changed, logs
+from sigmahat.health.change import largest_change
 from sigmahat.health.judge import Judged, State, Unjudged, Verdict, judge
 from sigmahat.health.logs import LogResult, Reason, by_joint
 from sigmahat.health.quantities import Name, NoStiffness
 from sigmahat.health.reference import Reference
+from sigmahat.health.threshold import limit
 
 JOINT = TrueJoint()
 
@@ -237,6 +239,37 @@ def test_few_healthy_joints_are_perhaps_changed() -> None:
     states = [verdict(logs([JOINT] * 30, seed=1000 + i)).state for i in range(60)]
     assert states.count(State.POSSIBLE) <= 9
     assert set(states) <= {State.UNCHANGED, State.POSSIBLE}
+
+
+def test_logs_that_claim_to_be_exact_do_not_decide() -> None:
+    """GIVEN friction that scatters equally in all logs, of which some claim a tenth of the error of
+    others: weights by the claims would leave few logs, and errors that no test expects."""
+    z = []
+    for seed in range(60):
+        rng = np.random.default_rng([seed, 5])
+        results = logs([JOINT] * 100, seed=2000 + seed)
+        claims = 0.1 * np.exp(rng.standard_normal(100))
+        scatter = JOINT.tau_coulomb * np.exp(0.1 * rng.standard_normal(100))
+        joint = [
+            with_friction(each, *values)
+            for each, *values in zip(results, scatter.tolist(), claims.tolist(), strict=True)
+        ]
+        (found,) = by_joint(joint)
+        friction = of(judge(found), Name.COULOMB)
+        largest = largest_change(friction.quantity.series)
+        assert largest is not None
+        z.append(abs(largest.z))
+    # With 10 % in a year, 1.6 of 60 are expected in 100 days; more than 5 have a probability of 1 %.
+    assert sum(np.array(z) > limit(0.1, 1)) <= 5
+
+
+def with_friction(result: LogResult, value: float, claim: float) -> LogResult:
+    """claim  relative standard deviation"""
+    together = result.together
+    i = len(together.phi) + together.quantities.index("tau_coulomb")
+    values, covariance = list(together.values), np.array(together.covariance)
+    values[i], covariance[i, i] = value, (claim * value) ** 2
+    return replace(result, together=replace(together, values=values, covariance=covariance.tolist()))
 
 
 def test_the_value_at_the_end_of_a_trend_is_not_the_mean_over_it() -> None:

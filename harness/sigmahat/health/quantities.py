@@ -430,10 +430,13 @@ class _Table:
             # What is left for these effects to explain is unknown: they stay in the regression.
             values = values - _explained(values, more[found.logs])
         between = max(variance_between(values, found.variances), least**2)
+        stds = np.sqrt(found.variances + between)
+        # No log counts more than the usual one: else the few that claim most would decide.
+        stds = np.maximum(stds, np.median(stds))
         series = Series(
             self._days[found.logs],
             values,
-            np.sqrt(found.variances + between),
+            stds,
             effect * effects[found.logs],
             common,
             least,
