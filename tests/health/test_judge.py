@@ -259,7 +259,7 @@ def test_logs_that_claim_to_be_exact_do_not_decide() -> None:
         largest = largest_change(friction.quantity.series)
         assert largest is not None
         z.append(abs(largest.z))
-    # With 10 % in a year, 1.6 of 60 are expected in 100 days; more than 5 have a probability of 1 %.
+    # With 10 % in a year, 1.6 of 60 are expected in 100 days; more than 5 have 1 %.
     assert sum(np.array(z) > limit(0.1, 1)) <= 5
 
 
@@ -269,7 +269,9 @@ def with_friction(result: LogResult, value: float, claim: float) -> LogResult:
     i = len(together.phi) + together.quantities.index("tau_coulomb")
     values, covariance = list(together.values), np.array(together.covariance)
     values[i], covariance[i, i] = value, (claim * value) ** 2
-    return replace(result, together=replace(together, values=values, covariance=covariance.tolist()))
+    return replace(
+        result, together=replace(together, values=values, covariance=covariance.tolist())
+    )
 
 
 def test_the_value_at_the_end_of_a_trend_is_not_the_mean_over_it() -> None:
