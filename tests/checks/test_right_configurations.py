@@ -8,7 +8,16 @@ import pytest
 import tomlkit
 
 import robot
-from checked_logs import GEAR, RIGHT, Array, as_recorded, knee_log, log_with_rests, stiff_log
+from checked_logs import (
+    GEAR,
+    RIGHT,
+    Array,
+    as_recorded,
+    knee_log,
+    log_of_teaching,
+    log_with_rests,
+    stiff_log,
+)
 from drawn_joints import MOTIONS, DrawnJoint, drawn_joint
 from recorded_logs import in_memory
 from shared_data import data_folder
@@ -115,6 +124,18 @@ def test_the_power_of_friction_shows_the_sign_of_the_torque() -> None:
     assert "friction takes power" in sentence(found)
     power = GEAR * float(np.mean(joint["tau"] * np.gradient(joint["theta"], joint["t"])))
     assert found.measured == pytest.approx(power, rel=0.05)
+
+
+def test_a_torque_that_is_a_function_of_the_position_is_no_wrong_gear_ratio() -> None:
+    """GIVEN gravity compensation, which explains the torque better than the motor equation does,
+    with any gear ratio, and a motor that is not known."""
+    log, text = log_of_teaching(), RIGHT.replace("motor.B = 1.05e-4", "motor.B = 2.3e-5")
+    text = text.replace("prior.B = 0.1", "prior.B = 1000\nprior.D_theta = 1000")
+    text = text.replace("range.phi = 0.03", "range.phi = 0.05")
+    assert not checked(log, text).is_wrong
+    # A wrong sign is found.
+    found = checked({**log, "current": -log["current"]}, text).of(Severity.WRONG)
+    assert [(each.key, each.proposed) for each in found] == [("ports.tau.sign", -1.0)]
 
 
 def test_the_friction_of_an_arm_that_stands_still_is_no_misfit() -> None:

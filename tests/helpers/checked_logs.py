@@ -141,6 +141,18 @@ def log_by_hand(hold: float) -> Mapping[str, Array]:
     return as_recorded({"t": t, "theta": theta, "q": theta + tau_e / K, "tau": tau + noise})
 
 
+def log_of_teaching() -> Mapping[str, Array]:
+    """The knee with a weight that its torque compensates, moved by a hand, in closed form. The
+    cogging of the motor, 2 mN.m, is not in the motor equation of `check`."""
+    t, theta, velocity, acceleration = _sines(0.4)
+    tau = 30.0 * np.sin(theta) / GEAR
+    cogging = 2e-3 * np.sin(40 * theta)
+    tau_e = GEAR * (_motor_torque(velocity, acceleration) + cogging - tau)
+    noise = 1e-4 * np.random.default_rng(1).standard_normal(len(t))
+    q = theta + tau_e / KNEE["spring.k_1"]
+    return as_recorded({"t": t, "theta": theta, "q": q, "tau": tau + noise})
+
+
 def log_under_gravity(change: float) -> Mapping[str, Array]:
     """The knee with a weight, in slow motion, in closed form. The stiffness of the knee changes at
     8 s.

@@ -101,6 +101,7 @@ class Positions:
 
     view: LogView  # the log, with the scales that were proposed
     fit: QuickFit | None  # the motor equation of this log
+    slope: Slope | None = None  # of q on theta, before a correction, if both move alike
     scale: Evidence | None = None  # slope of q on theta, if another scale explains it
     may_be_held: bool = False
     """Whether a hand may have moved the link while a drive held the motor. In this case, the scale
@@ -129,7 +130,9 @@ def compare_positions(view: LogView) -> Positions:
     if "tau_e_sensor" in ports and ports["theta"].column == ports["tau_e_sensor"].column:
         return same  # theta is the compliance of a test bench, which drives no link
     slope = _clear_slope(view)
-    return same if slope is None else _with_sign(_with_scale(same, slope))
+    if slope is None:
+        return same
+    return _with_sign(_with_scale(replace(same, slope=slope), slope))
 
 
 def _with_scale(before: Positions, slope: Slope) -> Positions:
@@ -158,7 +161,7 @@ def _with_scale(before: Positions, slope: Slope) -> Positions:
     if size > 1 and not _is_gamma(best, view) and _is_positive(before.fit):
         return replace(before, scale=evidence, may_be_held=True)
     corrected = best.applied(view)
-    return Positions(corrected, _fit(corrected), evidence, by_torque=likely is None)
+    return Positions(corrected, _fit(corrected), slope, evidence, by_torque=likely is None)
 
 
 def _is_positive(fit: QuickFit | None) -> bool:

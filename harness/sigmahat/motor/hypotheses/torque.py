@@ -14,6 +14,7 @@ from sigmahat.motor.friction import few_frictions, slower
 from sigmahat.motor.hypotheses.drive import drive
 from sigmahat.motor.hypotheses.hypothesis import Evidence, Hypothesis, distance, gear_of_slope
 from sigmahat.motor.hypotheses.positions import Positions
+from sigmahat.motor.hypotheses.slope import Slope
 from sigmahat.motor.inertia import KnownInertia
 from sigmahat.motor.log_view import LogView
 from sigmahat.motor.quantities import WIDE
@@ -97,7 +98,7 @@ def compare_torque(positions: Positions) -> TorqueEvidence:
         fit = quick_fit(view, fit.form.f_0)
         if fit is None or not fit.has_stiffness:
             return TorqueEvidence()
-    if not positions.corrections and (gear := _gear(view, fit)) is not None:
+    if not positions.corrections and (gear := _gear(view, fit, positions.slope)) is not None:
         return TorqueEvidence(gear=gear)
     if -np.sign(view.gamma) * fit.scores[LINEAR] < -1:
         return _negative_stiffness(view, fit)
@@ -163,15 +164,27 @@ _LEAST_GEAR = 2e-3
 """Smallest relative error of a gear ratio that is reported; real gears have smaller errors."""
 _MUCH = 0.3
 """Largest ratio of the squared errors, corrected to configured, if a gear ratio is wrong."""
+_PRECISE = 3.0
+"""Least error of a gear ratio, in half intervals. Where a controller makes the torque a function of
+the position, as in gravity compensation, this function explains the torque with any gear ratio."""
+_AS_FAR = 2.0
+_SAG = 0.03  # deviation of a slope from 1 that many springs have
+"""Where a link follows slowly, the right gear ratio does not take the slope of q on theta further
+from 1: at most to twice the distance, or to 3 %, by the deformation of the spring."""
 
 
-def _gear(view: LogView, fit: QuickFit) -> Evidence | None:
-    """Finds a slightly wrong gear ratio, if the correction explains much of the torque."""
+def _gear(view: LogView, fit: QuickFit, slope: Slope | None) -> Evidence | None:
+    """Finds a slightly wrong gear ratio, if the correction explains much of the torque.
+
+    slope  of q on theta; None if the link does not follow
+    """
     ports = view.configuration.ports
     if "theta" not in ports or "phi" in ports:
         return None
     error = gear_error(view, fit.form)
-    if error is None or not abs(error.value - 1) > error.half_width + _LEAST_GEAR:
+    if error is None or not abs(error.value - 1) > _PRECISE * error.half_width + _LEAST_GEAR:
+        return None
+    if slope is not None and _denies(slope, error.value):
         return None
     # An asymmetric spring, a wrong zero, or a changing spring must not explain the errors too.
     others = [
@@ -182,7 +195,16 @@ def _gear(view: LogView, fit: QuickFit) -> Evidence | None:
     if not all(error.fit.error < _MUCH * other for other in others if math.isfinite(other)):
         return None
     theta = ports["theta"]
-    return Evidence(1 / error.value, [gear_of_slope(theta, error.value, error.half_width)])
+    return Evidence(error.value, [gear_of_slope(theta, error.value, error.half_width)])
+
+
+def _denies(slope: Slope, error: float) -> bool:
+    """Returns whether a slow motion denies an error of the gear ratio of theta, configured to true.
+    """
+    if not (slope.is_slow and slope.value > 0):
+        return False
+    before, after = distance(slope.value, 1.0), distance(slope.value, error)
+    return after > max(_AS_FAR * before, _SAG)
 
 
 def _zero(view: LogView, fit: QuickFit) -> Zero | None:
