@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from health.joints import FRICTION, TORQUE_CONSTANT
 from health.simulate import JOINTS
-from sigmahat.health.change import largest_change
+from sigmahat.health.change import Series, largest_change, largest_episode
 from sigmahat.health.logs import LogResult, by_joint
 from sigmahat.health.quantities import Name, Quantities, Quantity, quantities
 from sigmahat.health.threshold import LOGS_A_YEAR, START, limit
@@ -116,12 +116,17 @@ def of(found: Quantities, name: Name) -> Quantity | None:
     return next((each for each in found.every if each.name is name), None)
 
 
+def largest_z(series: Series) -> float:
+    """Returns the largest |z| of a change or an episode; 0 without any."""
+    change, episode = largest_change(series), largest_episode(series)
+    return max(abs(change.z) if change else 0.0, episode.z if episode else 0.0)
+
+
 def alarm_at(quantity: Quantity, z: float, nights: Sequence[int]) -> int | None:
     """Returns the first of the nights, counted in logs of the joint, with an alarm."""
     for night in nights:
         count = int(np.searchsorted(quantity.logs, night))
-        found = largest_change(quantity.series.part(0, count)) if count else None
-        if found is not None and abs(found.z) > z:
+        if count and largest_z(quantity.series.part(0, count)) > z:
             return night
     return None
 
@@ -160,8 +165,7 @@ class Study:
         count = 0
         for _, found in runs:
             quantity, z = of(found, name), limit(START, len(found.every))
-            change = largest_change(quantity.series) if quantity else None
-            count += change is not None and abs(change.z) > z
+            count += quantity is not None and largest_z(quantity.series) > z
         return count, len(runs)
 
     def false_alarms(self, years: int) -> tuple[Mapping[float, int], Mapping[Name, int]]:
@@ -234,11 +238,9 @@ class Study:
 
 
 def _largest(quantity: Quantity) -> float:
-    found = [
-        largest_change(quantity.series.part(0, int(np.searchsorted(quantity.logs, night))))
-        for night in _NIGHTS
-    ]
-    return max((abs(each.z) for each in found if each is not None), default=0.0)
+    """Returns the largest |z| of all nights."""
+    counts = np.searchsorted(quantity.logs, _NIGHTS)
+    return max((largest_z(quantity.series.part(0, int(each))) for each in counts), default=0.0)
 
 
 def _moved(log: LogResult, kind: str, wanted: float, level: float) -> LogResult:

@@ -316,6 +316,10 @@ def test_a_hostile_place_is_text_in_the_page(shell: Shell) -> None:
         ("rosbag2_2026_03_02-08_15_30", datetime(2026, 3, 2, 8, 15, 30, tzinfo=UTC)),
         ("20260302_0815", datetime(2026, 3, 2, 8, 15, tzinfo=UTC)),
         ("20260302", datetime(2026, 3, 2, tzinfo=UTC)),
+        ("fw2025-11-07_2026-03-02", None),  # which of them?
+        ("SN20251107_2026-03-02", None),
+        ("2026-03-02_20260302_0815", datetime(2026, 3, 2, tzinfo=UTC)),
+        ("20260302_202603", datetime(2026, 3, 2, 20, 26, 3, tzinfo=UTC)),
         ("2026-02-30", None),
         ("120260302", None),
         ("knee 12", None),
@@ -389,7 +393,10 @@ def test_a_log_that_cannot_be_estimated_does_not_stop_the_night(shell: Shell) ->
         assert (
             "left out: logs/2026-03-03.csv: " in text and "left out: logs/2026-03-04.csv: " in text
         )
-        assert len(shell.json(command)["notes"]) == 2
+        found = shell.json(command)
+        assert len(found["notes"]) == 2
+        # THEN they count as logs that show nothing: after three in a row, a warning says so.
+        assert found["joints"]["knee"]["last_logs_not_counted"] == 2
     for name in ("01", "02"):
         Path("logs", f"2026-03-{name}.parquet").unlink()
     # Their results are left, so something is judged; without them, nothing is.

@@ -7,7 +7,7 @@ from datetime import timedelta
 import numpy as np
 import pytest
 
-from joint_results import SCATTER, START, TrueJoint, changed, logs
+from joint_results import PHI, SCATTER, START, TrueJoint, changed, logs
 from sigmahat.health.change import largest_change
 from sigmahat.health.judge import Judged, State, Unjudged, Verdict, judge
 from sigmahat.health.logs import LogResult, Reason, by_joint
@@ -127,6 +127,53 @@ def test_a_joint_that_was_repaired_is_as_before() -> None:
     judged = of(found, Name.STIFFNESS)
     assert judged.state is State.RESTORED and not found.is_alarm
     assert [(each.after - START).days for each in judged.changes] == [40, 80]
+
+
+@pytest.mark.parametrize(("worn", "after"), [(8, 4), (14, 9), (14, 40), (6, 100)])
+def test_a_repair_does_not_hide_what_was_worn(worn: int, after: int) -> None:
+    """No division of these logs in two shows much: before and after are as one."""
+    joints = [*changed(JOINT, 20, worn, k=0.88 * JOINT.k), *[JOINT] * after]
+    judged = of(verdict(logs(joints, seed=26)), Name.STIFFNESS)
+    assert judged.state is State.RESTORED
+    begin, end = (each.after for each in judged.changes)
+    assert [(each - START).days for each in (begin, end)] == [20, 20 + worn]
+
+
+@pytest.mark.parametrize("before", [20, 200])
+def test_a_large_change_of_the_gain_is_no_other_load(before: int) -> None:
+    """The torque that is read changes with it, as with another payload."""
+    found = verdict(logs(changed(JOINT, before, 8, gain=1 / 0.85), seed=27))
+    assert changes(found) == {Name.GAIN}
+    difference = of(found, Name.GAIN).difference
+    assert difference is not None
+    assert difference.size == pytest.approx(-np.log(0.85), abs=1.5 * difference.half_width())
+
+
+def test_a_softer_middle_is_no_softer_spring() -> None:
+    """Backlash and worn teeth: what is further out is as it was."""
+    results = logs([JOINT] * 60, seed=28)
+    for i in range(40, 60):
+        values = list(results[i].together.values)
+        values[2] *= 0.6
+        results[i] = replace(results[i], together=replace(results[i].together, values=values))
+    assert changes(verdict(results)) == {Name.MIDDLE}
+
+
+def test_logs_that_nearly_reach_the_deformations_count() -> None:
+    rng = np.random.default_rng(29)
+    results = [
+        replace(each, together=replace(each.together, phi=[x * (1 + 1e-3 * s) for x in PHI]))
+        for each, s in zip(logs([JOINT] * 30, seed=29), rng.uniform(-1, 1, 30), strict=True)
+    ]
+    assert verdict(results).without_stiffness == {}
+
+
+def test_logs_that_cannot_be_estimated_show_nothing() -> None:
+    failed = [START + timedelta(days=30 + day) for day in range(3)]
+    (joint,) = by_joint(logs([JOINT] * 30, seed=30), {"knee": failed})
+    assert judge(joint).silent == 3 and not judge(joint).is_watched
+    (joint,) = by_joint(logs([JOINT] * 31, seed=30), {"knee": failed[:1]})
+    assert judge(joint).is_watched
 
 
 @pytest.mark.parametrize("count", [0, 1, 2, 5])

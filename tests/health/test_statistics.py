@@ -1,6 +1,7 @@
 """The statistics of `health`, against closed forms, scipy, and dense algebra."""
 
 import math
+from dataclasses import replace
 from datetime import timedelta
 
 import numpy as np
@@ -12,7 +13,7 @@ from scipy.stats import t as student_t
 from health.false_alarms import largest_z
 from joint_results import TrueJoint, estimates
 from sigmahat.health import threshold
-from sigmahat.health.change import Kind, Series, largest_change, segments
+from sigmahat.health.change import Kind, Series, largest_change, largest_episode, segments
 from sigmahat.health.own import own_estimates
 from sigmahat.health.scatter import variance_between
 from sigmahat.health.threshold import START, limit
@@ -179,30 +180,69 @@ def test_effects_take_the_freedom_that_they_explain() -> None:
             assert found.freedom == pytest.approx(28 if scale < 1 else 26, rel=1e-3)
 
 
+class LeastSquares:
+    """Student's t of a column, by least squares with unequal times, weights and an effect."""
+
+    def __init__(self, n: int) -> None:
+        rng = np.random.default_rng(19)
+        self.days, self.stds = np.sort(rng.uniform(0, 400, n)), rng.uniform(0.5, 2.0, n)
+        effect = rng.standard_normal((n, 1))
+        values = self.stds * rng.uniform(-1.5, 1.5, n)
+        self.series = Series(self.days, values, self.stds, effect)
+        columns = np.column_stack([np.ones(n), effect - effect.mean()])
+        self.rows = np.vstack([columns / self.stds[:, None], [0, 1]])
+        self.y = np.append(values / self.stds, 0.0)
+        hat = self.rows @ np.linalg.pinv(self.rows)
+        self.freedom = n - 1 - float(np.trace(hat[:n, :n]))
+
+    def t(self, column: Array) -> float:
+        rows = np.column_stack([self.rows, np.append(column / self.stds, 0.0)])
+        solution, rest, _, _ = np.linalg.lstsq(rows, self.y, rcond=None)
+        variance = np.linalg.inv(rows.T @ rows)[2, 2] * rest[0] / self.freedom
+        return float(abs(solution[2]) / math.sqrt(variance))
+
+    def z(self, t: float) -> float:
+        return float(norm.isf(student_t.sf(t, self.freedom)))
+
+
 def test_all_change_points_at_once_are_each_by_itself() -> None:
-    """The cumulative sums against least squares, with unequal times, weights and an effect."""
-    rng = np.random.default_rng(19)
     n = 40
-    days = np.sort(rng.uniform(0, 400, n))
-    stds, effect = rng.uniform(0.5, 2.0, n), rng.standard_normal((n, 1))
-    values = stds * rng.uniform(-1.5, 1.5, n)
-    found = largest_change(Series(days, values, stds, effect))
+    by_rows = LeastSquares(n)
+    found, days, best = largest_change(by_rows.series), by_rows.days, 0.0
     assert found is not None
-    best = 0.0
-    rows = np.vstack(
-        [np.column_stack([np.ones(n), effect - effect.mean()]) / stds[:, None], [0, 1]]
-    )
-    y = np.append(values / stds, 0.0)
-    freedom = n - 1 - float(np.trace((rows @ np.linalg.pinv(rows))[:n, :n]))
     for at in range(2, n - 1):
         steps = (np.arange(n) >= at).astype(float)
         ramps = np.maximum(days - days[at - 1], 0.0) / (days[-1] - days[at - 1])
         for column in (steps, ramps) if at <= n - 10 else (steps,):
-            all_rows = np.column_stack([rows, np.append(column / stds, 0.0)])
-            solution, rest, _, _ = np.linalg.lstsq(all_rows, y, rcond=None)
-            variance = np.linalg.inv(all_rows.T @ all_rows)[2, 2] * rest[0] / freedom
-            best = max(best, abs(solution[2]) / math.sqrt(variance))
-    assert abs(found.z) == pytest.approx(norm.isf(student_t.sf(best, freedom)), rel=1e-6)
+            best = max(best, by_rows.t(column))
+    assert abs(found.z) == pytest.approx(by_rows.z(best), rel=1e-6)
+
+
+def test_all_episodes_at_once_are_each_by_itself() -> None:
+    n = 30
+    by_rows = LeastSquares(n)
+    by_rows.y[10:18] += 2.0  # in standard deviations: no value is limited
+    values = by_rows.y[:n] * by_rows.stds
+    found = largest_episode(replace(by_rows.series, values=values))
+    index = np.arange(n)
+    t = {
+        (first, end): by_rows.t(((index >= first) & (index < end)).astype(float))
+        for first in range(2, n - 3)
+        for end in range(first + 2, n - 1)
+    }
+    best = max(t, key=lambda each: t[each])
+    assert found is not None and (found.first, found.end) == best
+    # As rare as a tenth of the largest of 64 steps.
+    z = math.sqrt(by_rows.z(t[best]) ** 2 - 2 * math.log(640))
+    assert found.z == pytest.approx(z, rel=1e-6)
+
+
+def test_episodes_are_a_tenth_of_the_false_alarms() -> None:
+    """With a rate at which 40 of 200 series of 100 logs have a false alarm, 4 of them."""
+    z = threshold.limit(0.2 * threshold.LOGS_A_YEAR / 100, quantities=1)
+    values = np.random.default_rng(8).standard_normal((200, 100))
+    found = [largest_episode(series(each)) for each in values]
+    assert sum(each is not None and each.z > z for each in found) <= 8
 
 
 def test_an_effect_that_changes_with_the_values_explains_them() -> None:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import dataclass
 from datetime import datetime, timezone
 from functools import partial
 from pathlib import Path
@@ -83,11 +84,11 @@ def health(
 
     with common.errors_in_one_line(out):
         _one_for_each(limits)
-        found, notes = _results(folders, config, out)
+        found, failures, notes = _results(folders, config, out)
         since = since and since.replace(tzinfo=timezone.utc)
         kept = [each for each in found.results if since is None or each.time >= since]
         of_quantity: dict[Name, float] = {Name[name.upper()]: x for name, x in limits}
-        joints = by_joint(kept)
+        joints = by_joint(kept, _times(failures, config, since))
         if not any(each.used for each in joints):
             raise ValueError(_nothing_left(found, since, joints, notes))
         verdicts = [judge(each, false_alarms, of_quantity) for each in joints]
@@ -117,24 +118,59 @@ def _one_for_each(limits: Sequence[tuple[str, float]]) -> None:
             )
 
 
-def _results(folders: Sequence[Path], config: Path | None, out: Path) -> tuple[Results, list[str]]:
-    """Reads the results in folders, with a configuration those of their logs. Returns them, and
-    notes on what is left out."""
+@dataclass(frozen=True)
+class _Failure:
+    """A log that cannot be estimated."""
+
+    log: Path
+    joints: Sequence[str]  # of which; "" is the one without a name
+    is_whole: bool  # whether these are all joints of the configuration
+    reason: str
+
+    def __str__(self) -> str:
+        where = "" if self.is_whole else f"joint {', '.join(self.joints)} of "
+        reason = self.reason if str(self.log) in self.reason else f"{self.log}: {self.reason}"
+        return f"left out: {where}{reason}"
+
+
+def _times(
+    failures: Sequence[_Failure], config: Path | None, since: datetime | None
+) -> Mapping[str, Sequence[datetime]]:
+    """Returns the times of logs that cannot be estimated, by joint, as far as names say them."""
+    from sigmahat.recording.recorded import in_name
+
+    times: dict[str, list[datetime]] = {}
+    for each in failures:
+        time = in_name(each.log.stem)
+        if config is not None and time is not None and (since is None or time >= since):
+            for joint in each.joints:
+                times.setdefault(joint or config.stem, []).append(time)
+    return times
+
+
+def _results(
+    folders: Sequence[Path], config: Path | None, out: Path
+) -> tuple[Results, Sequence[_Failure], list[str]]:
+    """Reads the results in folders, with a configuration those of their logs. Returns them, the
+    logs that cannot be estimated, and notes on all that is left out."""
     from sigmahat.health.read import read_results
 
-    notes = list[str]()
+    failures, notes = list[_Failure](), list[str]()
     if config is not None:
-        folders = [_estimated(folder, config, out, notes) for folder in folders]
+        folders = [_estimated(folder, config, out, failures, notes) for folder in folders]
         folders = [each for each in folders if each.is_dir()]
+        notes = [*map(str, failures), *notes]
         if not folders:
             raise ValueError("no log can be estimated: " + "; ".join(notes))
     found = read_results(folders)
-    return found, [*notes, *_not_read(found)]
+    return found, failures, [*notes, *_not_read(found)]
 
 
-def _estimated(folder: Path, config: Path, out: Path, notes: list[str]) -> Path:
+def _estimated(
+    folder: Path, config: Path, out: Path, failures: list[_Failure], notes: list[str]
+) -> Path:
     """Estimates each log of a folder that has no result of this configuration yet. Returns the
-    folder of the results; adds notes on logs that cannot be estimated."""
+    folder of the results; adds logs that cannot be estimated, and notes on others."""
     from sigmahat.files.output import sha256
     from sigmahat.health.read import Estimated, estimated
     from sigmahat.recording.configuration import joints_of, read_configuration, read_document
@@ -152,7 +188,7 @@ def _estimated(folder: Path, config: Path, out: Path, notes: list[str]) -> Path:
             own = sha256(log)
             new = [each for each in joints if Estimated(each, own, configuration) not in known]
             if new:
-                notes += _estimate(log, config, results / log.stem, new, joints)
+                failures += _estimate(log, config, results / log.stem, new, joints)
             bar.update(1)
     if all(each.configuration == configuration for each in known):
         return results
@@ -168,8 +204,8 @@ def _estimated(folder: Path, config: Path, out: Path, notes: list[str]) -> Path:
 
 def _estimate(
     log: Path, config: Path, into: Path, new: Sequence[str], joints: Sequence[str]
-) -> Iterator[str]:
-    """Estimates the joints that are new of a log. Yields why some of them are left out."""
+) -> Iterator[_Failure]:
+    """Estimates the joints that are new of a log. Yields which of them are left out, and why."""
     from sigmahat.commands.results import estimated_into
 
     job = partial(estimated_into, into)
@@ -184,8 +220,7 @@ def _estimate(
         except ValueError as error:
             reasons.setdefault(str(error), []).append(joint)
     for reason, of in reasons.items():
-        where = "" if of == list(joints) else f"joint {', '.join(of)} of "
-        yield f"left out: {where}{reason if str(log) in reason else f'{log}: {reason}'}"
+        yield _Failure(log, of, of == list(joints), reason)
 
 
 def _nothing_left(

@@ -20,12 +20,16 @@ FEWEST_AFTER = 2
 """Least number of logs on either side of a change: one log alone may be a bad one."""
 SHORTEST_TREND = 10  # least number of logs in a trend: fewer are a step
 _LIMIT = 3.5  # std deviations from the middle at which a value counts no more [1]
-_NEIGHBOURS = 9  # least number of logs next to each other with which a log has to agree
+NEIGHBOURS = 9  # least number of logs next to each other with which a log has to agree
 _SHARE = 2
 """One in so many logs of a series are these neighbours: in a long series, bad logs come together
 somewhere by chance. With nine of 365 logs, 7 of 400 simulated joint-years had a false alarm, and 4
 with a quarter of them."""
 _LEAST_FREEDOM = 3  # degrees of freedom from which a change can be judged
+_ENDS = 64  # largest number of logs at which an episode may begin or end
+_RARER = 10.0
+"""Episodes get a tenth of the false alarms of other changes. There are up to _ENDS times as many as
+steps, so one with z counts as a step with z^2 - 2 ln(_RARER _ENDS) squared, which is as rare."""
 _TOLD_APART = 1e-9  # least share of a change that effects do not explain
 _REFITS = 5
 _RAREST = 1e-300  # probability below which there is no normal quantile
@@ -59,6 +63,15 @@ class Change:
     def half_width(self) -> float:
         """Returns half of the 95 % interval of the size."""
         return half_width(self.std, self.freedom)
+
+
+@dataclass(frozen=True)
+class Episode:
+    """Logs with another value, between logs that agree with each other."""
+
+    first: int  # index of its first log
+    end: int  # index of the first log after it
+    z: float  # as of a Change, for a step that is as rare [1]
 
 
 @dataclass(frozen=True)
@@ -100,6 +113,18 @@ def as_normal(value: Array, freedom: float) -> Array:
     return found
 
 
+def running_median(values: Array, count: int) -> Array:
+    """Returns the median of each value and its neighbours [size: logs].
+
+    count  of neighbours, >= 1, with the value, which is the middle one; at both ends, the first or
+           the last of them. All values are neighbours if there are no more.
+    """
+    count = min(count, len(values))
+    medians = np.median(np.lib.stride_tricks.sliding_window_view(values, count), axis=1)
+    found: Array = medians[np.clip(np.arange(len(values)) - count // 2, 0, len(values) - count)]
+    return found
+
+
 def largest_change(series: Series) -> Change | None:
     """Returns the change with the largest |z|; None for logs too few or too alike to judge."""
     if len(series.values) <= _LEAST_FREEDOM:
@@ -119,6 +144,23 @@ def largest_change(series: Series) -> Change | None:
         return None
     _, kind, at = best
     return changes.fitted(kind, at)
+
+
+def largest_episode(series: Series) -> Episode | None:
+    """Returns the episode with the largest |z|, in a long series only to within some logs; None for
+    logs too few or too alike to judge."""
+    count = len(series.values)
+    last = count - FEWEST_AFTER
+    if count < 3 * FEWEST_AFTER or (changes := _Regression(series)).freedom < _LEAST_FREEDOM:
+        return None
+    ends = np.unique(
+        np.linspace(FEWEST_AFTER, last, min(_ENDS, last - FEWEST_AFTER + 1)).astype(int)
+    )
+    t = np.abs(changes.t_of_episodes(ends))
+    first, end = np.unravel_index(int(np.argmax(t)), t.shape)
+    z = float(as_normal(t[first, end], changes.freedom))
+    rarer = float(np.sqrt(max(z**2 - 2 * np.log(_RARER * _ENDS), 0.0)))
+    return Episode(int(ends[first]), int(ends[end]), rarer) if rarer > 0 else None
 
 
 def _sums(kind: Kind, times: Array, points: NDArray[np.intp], columns: Array) -> Array:
@@ -168,15 +210,34 @@ class _Regression:
 
     def t(self, kind: Kind, points: NDArray[np.intp]) -> Array:
         """Returns Student's t of a change at each point [size: points]."""
-        y, w = self._y, self._weights[:, None]
-        rest = np.hstack([w * y[: self._logs, None], w * self._q[: self._logs]])
-        sums = _sums(kind, self._times, points, rest)
-        products, explained = sums[:, 0], sums[:, 1:]
-        own = self._own(kind, points)
-        squares = own - np.sum(explained**2, axis=1)
+        return self._t(_sums(kind, self._times, points, self._columns()), self._own(kind, points))
+
+    def t_of_episodes(self, ends: NDArray[np.intp]) -> Array:
+        """Returns Student's t of an episode between each two logs, 0 for those with too few of them
+        [size: ends x ends]."""
+        sums = _sums(Kind.STEP, self._times, ends, self._columns())
+        own = self._own(Kind.STEP, ends)
+        between = self._t(sums[:, None] - sums[None], own[:, None] - own[None])
+        return np.where(ends[None] - ends[:, None] >= FEWEST_AFTER, between, 0.0)
+
+    def _columns(self) -> Array:
+        """Returns the columns whose products with a regressor say all about it [size: logs x
+        columns]: the values, and constant and effects."""
+        weights, y = self._weights[:, None], self._y[: self._logs, None]
+        return np.hstack([weights * y, weights * self._q[: self._logs]])
+
+    def _t(self, sums: Array, own: Array) -> Array:
+        """Returns Student's t of regressors [size: regressors].
+
+        sums  products of the regressors and _columns() [size: regressors x columns]
+        own   sums of squares of the weighted regressors [size: regressors]
+        """
+        products, explained = sums[..., 0], sums[..., 1:]
+        squares = own - np.sum(explained**2, axis=-1)
         is_told_apart = squares > _TOLD_APART * own
-        squares = np.where(is_told_apart, squares, own)
-        errors = np.maximum(y @ y - products**2 / squares, 1e-12 * (y @ y) + 1e-300)
+        squares = np.where(is_told_apart, squares, 1.0)
+        all_errors = float(self._y @ self._y)
+        errors = np.maximum(all_errors - products**2 / squares, 1e-12 * all_errors + 1e-300)
         found = products / np.sqrt(squares * np.maximum(errors / self.freedom, self._least))
         return np.where(is_told_apart, found, 0.0)
 
@@ -202,10 +263,8 @@ class _Regression:
         more logs is not, however large it is. With fewer than nine logs, all are neighbours.
         """
         values = self._series.values - np.median(self._series.values)
-        count = min(max(_NEIGHBOURS, self._logs // _SHARE), self._logs)
-        medians = np.median(np.lib.stride_tricks.sliding_window_view(values, count), axis=1)
-        first = np.clip(np.arange(self._logs) - count // 2, 0, self._logs - count)
-        around, most = medians[first], _LIMIT / self._weights
+        around = running_median(values, max(NEIGHBOURS, self._logs // _SHARE))
+        most = _LIMIT / self._weights
         found: Array = np.clip(values, np.minimum(around, 0) - most, np.maximum(around, 0) + most)
         return found
 
@@ -225,9 +284,8 @@ class _Regression:
             limited = values - errors + middle + np.clip(errors - middle, -_LIMIT, _LIMIT)
         std = float(np.sqrt(max(rest @ rest / self.freedom, self._least) / squares))
         common = self._series.common
-        if common:
-            z = np.sign(z) / np.hypot(1 / max(abs(z), 1e-9), common / max(abs(size), 1e-300))
-        return Change(kind, at, float(z), size, float(np.hypot(std, common)), self.freedom)
+        z = _with_common(z, size, common)
+        return Change(kind, at, z, size, float(np.hypot(std, common)), self.freedom)
 
     def step(self, at: int) -> tuple[float, float]:
         """Returns the size of a step, and its standard deviation by those of logs and effects; bad
@@ -253,6 +311,13 @@ class _Regression:
         rows = np.concatenate([column, np.zeros(len(self._q) - self._logs)])
         rest: Array = rows - self._q @ (self._q.T @ rows)
         return rest
+
+
+def _with_common(z: float, size: float, common: float) -> float:
+    """Returns z of a change of this size that may also be one of Series.common."""
+    if common == 0:
+        return z
+    return float(np.sign(z) / np.hypot(1 / max(abs(z), 1e-9), common / max(abs(size), 1e-300)))
 
 
 def contrast(series: Series, first: int, last: int) -> tuple[float, float]:
@@ -286,10 +351,24 @@ def _divided(series: Series, limit: float, first: int) -> list[Change]:
     """first  index of the first log of this part"""
     found = largest_change(series)
     if found is None or abs(found.z) <= limit:
-        return []
+        return _both_ends(series, limit, first)
     here = replace(found, at=first + found.at)
     before = _divided(series.part(0, found.at), limit, first)
     if found.kind is Kind.TREND:  # what follows is part of it
         return [*before, here]
     after = _divided(series.part(found.at, len(series.values)), limit, first + found.at)
     return [*before, here, *after]
+
+
+def _both_ends(series: Series, limit: float, first: int) -> list[Change]:
+    """Returns the two steps of an episode, of which none need be seen by itself: what was repaired
+    is as before, so that no division of the logs in two shows much."""
+    episode = largest_episode(series)
+    if episode is None or episode.z <= limit:
+        return []
+    begin = _Regression(series.part(0, episode.end)).fitted(Kind.STEP, episode.first)
+    if _with_common(episode.z, begin.size, series.common) <= limit:
+        return []
+    rest = _Regression(series.part(episode.first, len(series.values)))
+    end = rest.fitted(Kind.STEP, episode.end - episode.first)
+    return [replace(begin, at=first + episode.first), replace(end, at=first + episode.end)]

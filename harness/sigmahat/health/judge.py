@@ -206,6 +206,7 @@ def _silent(logs: JointLogs, without_stiffness: Mapping[int, NoStiffness]) -> in
     """Returns how many of the last logs, in a row, do not count for the stiffness."""
     dated = [(each.time, i not in without_stiffness) for i, each in enumerate(logs.used)]
     dated += [(each.result.time, False) for each in logs.left_out if each.reason is Reason.DOUBT]
+    dated += [(each, False) for each in logs.failed]
     dated.sort(key=lambda each: each[0], reverse=True)
     return next((i for i, (_, counts) in enumerate(dated) if counts), len(dated))
 
@@ -225,9 +226,10 @@ def _judged(quantity: Quantity, logs: JointLogs, z: float, limits: Mapping[Name,
         is_unclear = quantity.name is Name.STIFFNESS and len(logs.used) >= FEWEST
         state = State.UNCLEAR if is_unclear else State.UNKNOWN
         return Judged(quantity, state, (), _level(quantity, 0), None)
-    largest = largest_change(series)
-    is_found = largest is not None and abs(largest.z) > z
-    changes = segments(series, z) if is_found else _possible(largest)
+    changes = segments(series, z)
+    is_found = bool(changes)
+    if not is_found:
+        changes = _possible(largest_change(series))
     times = [logs.used[i].time for i in quantity.logs]
     dated = [Dated(each, times[each.at - 1], times[each.at]) for each in changes]
     difference = _difference(series, changes)

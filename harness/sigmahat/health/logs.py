@@ -54,10 +54,15 @@ class JointLogs:
     joint: str
     used: Sequence[LogResult]
     left_out: Sequence[LeftOut]
+    failed: Sequence[datetime] = ()  # times of logs that could not be estimated
 
 
-def by_joint(results: Sequence[LogResult]) -> Sequence[JointLogs]:
+def by_joint(
+    results: Sequence[LogResult], failed: Mapping[str, Sequence[datetime]] | None = None
+) -> Sequence[JointLogs]:
     """Sorts results by joint and time, and finds those that are no independent evidence.
+
+    failed  times of logs that could not be estimated, by joint
 
     Of results with the same log, the first is used: so of a result, and of one that continued from
     it, the one with fewer logs.
@@ -65,10 +70,11 @@ def by_joint(results: Sequence[LogResult]) -> Sequence[JointLogs]:
     joints: dict[str, list[LogResult]] = {}
     for result in results:
         joints.setdefault(result.joint, []).append(result)
-    return [_of_joint(name, joints[name]) for name in sorted(joints)]
+    times = failed or {}
+    return [_of_joint(name, joints[name], times.get(name, ())) for name in sorted(joints)]
 
 
-def _of_joint(joint: str, results: Sequence[LogResult]) -> JointLogs:
+def _of_joint(joint: str, results: Sequence[LogResult], failed: Sequence[datetime]) -> JointLogs:
     used: list[LogResult] = []
     left_out: list[LeftOut] = []
     seen: dict[str, str] = {}
@@ -88,7 +94,7 @@ def _of_joint(joint: str, results: Sequence[LogResult]) -> JointLogs:
         else:
             left_out.append(LeftOut(result, Reason.DOUBT))
     used.sort(key=lambda each: (each.time, each.place))
-    return JointLogs(joint, used, left_out)
+    return JointLogs(joint, used, left_out, failed)
 
 
 def _first(seen: Mapping[str, str], digests: Sequence[str]) -> str | None:

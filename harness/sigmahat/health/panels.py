@@ -44,8 +44,11 @@ def _panel(judged: Judged, verdict: Verdict) -> Panel:
     values = scale * _in_unit(quantity, quantity.series.values)
     changed = judged.state in _SHOWN
     name = quantity.name.value
+    title = f"{verdict.logs.joint}: {name}"
+    if quantity.name is Name.GAIN:
+        name = "inertia of the motor, as the torque shows it"  # a smaller constant, a larger one
     return Panel(
-        title=f"{verdict.logs.joint}: {name}",
+        title=title,
         x_label=f"days since {day(first)}",
         y_label=f"{name} [{plain_unit(unit)}]" if unit != "1" else name,
         curves=[

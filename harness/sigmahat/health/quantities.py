@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sigmahat.estimator.instances import QUANTITIES
-from sigmahat.health.change import Series
+from sigmahat.health.change import NEIGHBOURS, Series, running_median
 from sigmahat.health.logs import JointLogs, LogResult
 from sigmahat.health.own import OwnEstimates, own_estimates
 from sigmahat.health.scatter import variance_between
@@ -22,6 +22,9 @@ Array = NDArray[np.float64]
 
 _MOST = 0.8  # share of the logs that have to determine the inertia
 _REACHED = 0.9  # share of the logs that reach the agreed deformations, or have the set-point
+_NEAR = 0.01
+"""A log reaches a deformation up to this distance, relative to the usual range of a log: the curve
+goes on as it ends."""
 _USEFUL = 0.25
 """Least width of the agreed deformations, relative to the usual range of a log: closer together,
 the shape of the curve between them is not known."""
@@ -34,8 +37,8 @@ deviation [1]."""
 _LIKE = 0.05  # relative difference of set-points that count as equal [1]
 _OF_MOTION = 0.1
 """Relative change of a quantity that another motion or load can explain, per relative change of
-velocity, acceleration or torque: standard deviation [1]. The torque contains the gain, of which it
-is no cause; but by this it explains only a tenth of a change of the gain."""
+velocity, acceleration or torque: standard deviation [1]. The torque is without the usual gain where
+logs show it: else it would explain a change of the gain, of which it is no cause."""
 _PARTS = ("sigma", "middle", "ends", *QUANTITIES)
 """Of each log: mean stiffness at the agreed deformations, stiffness in the middle and at both ends
 [N.m/rad], and the quantities of the estimator."""
@@ -207,17 +210,17 @@ class _Table:
         self._shows_gain = own.determines_inertia | (not cancels)
         """Whether a log shows the gain, or no log needs to [size: logs]."""
         at = _at(own, self._set_points())
-        self._lacks = self._why_not(at)
         low, high = _ends(own, at)
         has_range = np.isfinite(low)
         self._half = float(np.median((high - low)[has_range])) / 2 if np.any(has_range) else 0.0
         """Half of the usual range of the deformation [rad]."""
+        self._lacks = self._why_not(at)
         if agreed.phi is None:
             best = _best_known(own, at)
             parts = [best, np.zeros_like(best), np.zeros_like(best)]
         else:
             weights = [_interpolation(own.phi, wanted, at) for wanted in agreed.phi]
-            parts = [np.mean(weights, axis=0), weights[1], (weights[0] + weights[2]) / 2]
+            parts = [(weights[0] + weights[2]) / 2, weights[1], (weights[0] + weights[2]) / 2]
         self._places = self._of_place(parts[0])
         rest = np.zeros((len(results), len(parts), len(QUANTITIES)))
         w = np.concatenate([np.stack(parts, axis=1), rest], axis=2)
@@ -281,7 +284,7 @@ class _Table:
         is_narrow = np.zeros(len(low), np.bool_)
         if self._agreed.phi is not None:
             first, _, last = self._agreed.phi
-            slack = 1e-6 * np.where(np.isfinite(low), high - low, 0.0) + 1e-300
+            slack = 2 * _NEAR * self._half
             is_narrow = (first < low - slack) | (last > high + slack)
         found: list[NoStiffness | None] = []
         for shows_gain, points, narrow in zip(
@@ -446,11 +449,24 @@ class _Table:
         claimed = np.sqrt(found.variances)
         return Quantity(name, unit, level, series, found.logs.tolist(), claimed, is_logarithm, gain)
 
+    def _gains(self) -> Array:
+        """Usual gain of the torque of each log and its neighbours; 1 without any [size: logs].
+
+        It is not the one of the log alone, whose error would be in the effect as in the inertia.
+        """
+        gains = np.ones(len(self._results))
+        shown = self._own.determines_inertia
+        if self._cancels:
+            B = self._own.values[shown, self._own.index("B")]
+            gains[shown] = running_median(B, NEIGHBOURS) / self._inertia
+        return gains
+
     def _of_motion(self) -> Array:
         """Effects of motion and temperature on a quantity, relative [size: logs x effects]."""
         moved = [each.excitation for each in self._results]
-        rows = [(each.velocity, each.acceleration, each.torque) for each in moved]
-        logarithms = np.log(np.maximum(np.array(rows), 1e-300))
+        torques = np.array([each.torque for each in moved]) / self._gains()
+        rows = np.array([(each.velocity, each.acceleration) for each in moved])
+        logarithms = np.log(np.maximum(np.column_stack([rows, torques]), 1e-300))
         columns = [_OF_MOTION * (logarithms - np.median(logarithms, axis=0))]
         temperatures = [each.temperature for each in self._results]
         if all(each is not None for each in temperatures):

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 from datetime import datetime
 
+from sigmahat.checks.text import DOUBTS
 from sigmahat.health.change import Kind
 from sigmahat.health.judge import (
     FEWEST,
@@ -240,7 +241,9 @@ def doubts_in_words(left_out: Sequence[LeftOut]) -> Iterator[str]:
                 "this log without --start-from"
             )
         else:
-            yield f"{place}: left out, {each.result.doubt}"
+            doubt = each.result.doubt
+            why = f": {DOUBTS[doubt][1]}" if doubt in DOUBTS else ""
+            yield f"{place}: left out, {doubt}{why}"
 
 
 def day(time: datetime) -> str:

@@ -1,6 +1,7 @@
 """When a log was recorded, and how warm the motor was: what a comparison of logs needs."""
 
 import re
+from contextlib import suppress
 from dataclasses import dataclass
 from datetime import datetime, timedelta, timezone
 from enum import Enum
@@ -16,7 +17,8 @@ _EPOCH = datetime(1970, 1, 1, tzinfo=timezone.utc)
 _DATES = (1e9, 4e9)  # [s] since 1970 between which a clock counts from 1970: years 2001 to 2096
 _IN_NAME = re.compile(
     r"(?<!\d)(20\d\d)([-_.]?)([01]\d)\2([0-3]\d)"
-    r"(?:[T_ -]{0,2}([0-2]\d)[-:_h.]?([0-5]\d)(?:[-:_m.]?([0-5]\d))?)?(?!\d)"
+    r"(?:[T_ -]{0,2}(?!20\d\d[-_.]?[01]\d[-_.]?[0-3]\d)"  # no other date
+    r"([0-2]\d)[-:_h.]?([0-5]\d)(?:[-:_m.]?([0-5]\d))?)?(?!\d)"
 )
 """A date in the name of a file, with or without a time: 2026-03-02, 20260302T081500."""
 
@@ -95,15 +97,15 @@ def _of_clock(log: Log, configuration: Configuration) -> datetime | None:
 
 
 def in_name(name: str) -> datetime | None:
-    """Returns the date, and the time if there is one, in the name of a file; None without them."""
+    """Returns the date, and the time if there is one, in the name of a file; None without them, and
+    for several days, one of which may be that of a firmware or of a delivery."""
+    times = list[datetime]()
     for found in _IN_NAME.finditer(name):
         year, _, month, day, hour, minute, second = found.groups()
         numbers = (int(each or 0) for each in (year, month, day, hour, minute, second))
-        try:
-            return datetime(*numbers, tzinfo=timezone.utc)  # type: ignore[arg-type, misc]
-        except ValueError:  # such as the 31st of June
-            continue
-    return None
+        with suppress(ValueError):  # such as the 31st of June
+            times.append(datetime(*numbers, tzinfo=timezone.utc))  # type: ignore[arg-type, misc]
+    return times[0] if len({each.date() for each in times}) == 1 else None
 
 
 def temperature(log: Log, configuration: Configuration) -> float | None:

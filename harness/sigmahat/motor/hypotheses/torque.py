@@ -199,8 +199,7 @@ def _gear(view: LogView, fit: QuickFit, slope: Slope | None) -> Evidence | None:
 
 
 def _denies(slope: Slope, error: float) -> bool:
-    """Returns whether a slow motion denies an error of the gear ratio of theta, configured to true.
-    """
+    """Returns whether a slow motion denies an error of a gear ratio, configured to true."""
     if not (slope.is_slow and slope.value > 0):
         return False
     before, after = distance(slope.value, 1.0), distance(slope.value, error)
