@@ -160,7 +160,10 @@ def largest_episode(series: Series) -> Episode | None:
     first, end = np.unravel_index(int(np.argmax(t)), t.shape)
     z = float(as_normal(t[first, end], changes.freedom))
     rarer = float(np.sqrt(max(z**2 - 2 * np.log(_RARER * _ENDS), 0.0)))
-    return Episode(int(ends[first]), int(ends[end]), rarer) if rarer > 0 else None
+    if rarer == 0:
+        return None
+    begin = _Regression(series.part(0, int(ends[end]))).fitted(Kind.STEP, int(ends[first]))
+    return Episode(int(ends[first]), int(ends[end]), _with_common(rarer, begin.size, series.common))
 
 
 def _sums(kind: Kind, times: Array, points: NDArray[np.intp], columns: Array) -> Array:
@@ -367,8 +370,6 @@ def _both_ends(series: Series, limit: float, first: int) -> list[Change]:
     if episode is None or episode.z <= limit:
         return []
     begin = _Regression(series.part(0, episode.end)).fitted(Kind.STEP, episode.first)
-    if _with_common(episode.z, begin.size, series.common) <= limit:
-        return []
     rest = _Regression(series.part(episode.first, len(series.values)))
     end = rest.fitted(Kind.STEP, episode.end - episode.first)
     return [replace(begin, at=first + episode.first), replace(end, at=first + episode.end)]

@@ -39,9 +39,9 @@ _OF_MOTION = 0.1
 """Relative change of a quantity that another motion or load can explain, per relative change of
 velocity, acceleration or torque: standard deviation [1]. The torque is without the usual gain where
 logs show it: else it would explain a change of the gain, of which it is no cause."""
-_PARTS = ("sigma", "middle", "ends", *QUANTITIES)
-"""Of each log: mean stiffness at the agreed deformations, stiffness in the middle and at both ends
-[N.m/rad], and the quantities of the estimator."""
+_PARTS = ("sigma", "middle", *QUANTITIES)
+"""Of each log: mean stiffness at both ends of the agreed deformations, as backlash and worn teeth
+soften the middle; the stiffness there [N.m/rad]; and the quantities of the estimator."""
 _OF_TEMPERATURE = 0.005  # the same per kelvin: magnets and copper change by less [1/K]
 _LEAST = 5e-3
 """Least relative scatter of results [1]: a motion that is always the same hides that a joint
@@ -217,10 +217,10 @@ class _Table:
         self._lacks = self._why_not(at)
         if agreed.phi is None:
             best = _best_known(own, at)
-            parts = [best, np.zeros_like(best), np.zeros_like(best)]
+            parts = [best, np.zeros_like(best)]
         else:
             weights = [_interpolation(own.phi, wanted, at) for wanted in agreed.phi]
-            parts = [(weights[0] + weights[2]) / 2, weights[1], (weights[0] + weights[2]) / 2]
+            parts = [(weights[0] + weights[2]) / 2, weights[1]]
         self._places = self._of_place(parts[0])
         rest = np.zeros((len(results), len(parts), len(QUANTITIES)))
         w = np.concatenate([np.stack(parts, axis=1), rest], axis=2)
@@ -353,12 +353,12 @@ class _Table:
         where each log has its own deformations: another part of a curve has another shape."""
         if self._agreed.phi is None:
             return
-        both = [self._values[:, _PARTS.index(name)] > 0 for name in ("middle", "ends")]
+        both = [self._values[:, _PARTS.index(name)] > 0 for name in ("middle", "sigma")]
         logs = np.flatnonzero(self._with_stiffness() & both[0] & both[1])
-        values = np.log(self._part("middle", logs) / self._part("ends", logs))
+        values = np.log(self._part("middle", logs) / self._part("sigma", logs))
         if np.any(np.abs(values) > _OF_SLOPES):
             found = _Found(
-                logs, values, self._of_ratio("middle", "ends", logs), np.zeros_like(values)
+                logs, values, self._of_ratio("middle", "sigma", logs), np.zeros_like(values)
             )
             yield self._quantity(Name.MIDDLE, "1", 1.0, found, 0.0, 1.0, _OF_SLOPES)
 
