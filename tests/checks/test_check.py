@@ -353,6 +353,29 @@ def test_a_size_of_no_usual_joint_is_said(
     assert [each.severity for each in found] == [severity]
 
 
+def test_motor_and_link_that_are_swapped_after_the_gear_are_named() -> None:
+    """GIVEN both in rad after the gear, so that their motions do not show which is which."""
+    log = joint_log({**KNEE, "spring.k_1": 300.0}, 1e-3)
+    right = configured(*ANY_MOTOR)
+    assert "swap" not in [each.about for each in wrong(log, right)]
+    found = wrong({**log, "theta": log["q"], "q": log["theta"]}, right)
+    (swap,) = [each for each in found if each.about == "swap"]
+    assert (swap.key, swap.proposed) == ("ports.theta.column", "q")
+    assert swap.others == [("ports.q.column", "theta")]
+    assert "are swapped" in sentence(swap)
+    assert sentence(swap).endswith('try "q" and ports.q.column = "theta"')
+
+
+def test_degrees_that_count_as_rad_are_a_deformation_of_no_spring() -> None:
+    """GIVEN both positions in degrees, of a soft joint, THEN no zero explains the deformation."""
+    log = joint_log({**KNEE, "spring.k_1": 100.0}, 1e-3)
+    wrong = {**log, **{name: np.degrees(log[name]) for name in ("theta", "q")}}
+    view = liveliest_part(LogInMemory(Path("log"), wrong), in_memory(configured(*ANY_MOTOR)))
+    (found,) = [each for each in of_sizes(compare_positions(view)) if each.about == "deformation"]
+    assert found.severity is Severity.WRONG
+    assert found.keys == ("ports.q.unit", "ports.theta.unit")
+
+
 def test_the_inertia_at_the_link_is_a_size() -> None:
     """GIVEN a torque 80 times too large, THEN it is below that of a large robot, and the inertia of
     the motor is not."""

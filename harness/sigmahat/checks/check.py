@@ -101,6 +101,8 @@ def _tried(view: LogView, finding: Finding) -> Finding:
     """
     if finding.severity is not Severity.WRONG or finding.proposed is None:
         return finding
+    if finding.about == "swap":
+        return finding  # two keys at once
     settings = [(finding.key, finding.proposed), *finding.others]
     best, least = None, math.inf
     for key, value in settings:

@@ -12,8 +12,8 @@ import numpy as np
 
 from sigmahat.checks.findings import Finding, Kind, Severity
 from sigmahat.motor.hypotheses.hypothesis import Evidence, distance
-from sigmahat.motor.hypotheses.misfit import misfit
-from sigmahat.motor.hypotheses.positions import Positions, swapped
+from sigmahat.motor.hypotheses.misfit import is_explained_by_swap, misfit
+from sigmahat.motor.hypotheses.positions import Positions, other_columns, swapped
 from sigmahat.motor.hypotheses.size import implausible_sizes
 from sigmahat.motor.hypotheses.torque import (
     Delay,
@@ -57,8 +57,14 @@ def of_swap(view: LogView) -> Iterator[Finding]:
 
 def of_misfit(positions: Positions) -> Iterator[Finding]:
     """Finds a torque that the motion does not explain, whatever is wrong in the configuration."""
-    evidence = None if positions.fit is None else misfit(positions.view, positions.fit)
-    if evidence is not None:
+    view, fit = positions.view, positions.fit
+    evidence = None if fit is None else misfit(view, fit)
+    if fit is None or evidence is None:
+        return
+    if is_explained_by_swap(view, fit):
+        evidence = replace(evidence, hypotheses=other_columns(view))
+        yield finding(Kind.UNEXPLAINED, Severity.WRONG, evidence, "", 0.0, "swap")
+    else:
         yield finding(Kind.UNEXPLAINED, Severity.NOTE, evidence, "", 0.0)
 
 
@@ -124,6 +130,8 @@ def _of_torque(view: LogView, evidence: TorqueEvidence) -> Iterator[Finding]:
     if evidence.deformation is not None:
         kind = Kind.STIFFNESS_SIGN
         yield finding(kind, Severity.WRONG, evidence.deformation, "N.m/rad")
+    if evidence.swap is not None:
+        yield finding(Kind.STIFFNESS_SIGN, Severity.WRONG, evidence.swap, "N.m/rad", about="swap")
     if evidence.zero is not None:
         yield from _of_zero(view, evidence.zero)
     if evidence.asymmetry is not None:

@@ -66,6 +66,8 @@ def _proposal(finding: Finding) -> str:
         return ""
     first = "" if finding.proposed is None else f"; try {_value(finding.proposed)}"
     others = [key if v is None else f"{key} = {_value(v)}" for key, v in finding.others]
+    if finding.about == "swap":
+        return f"{first} and {' and '.join(others)}"
     return f"{first}; else look at {' or '.join(others)}" if others else first
 
 
@@ -134,6 +136,10 @@ _SPECIAL = {
     (Kind.SLOPE, "sign"): "q moves against theta",
     (Kind.SLOPE, "swap"): "the columns of theta and q are swapped: the link would move "
     "{value:.4g} times as far",
+    (Kind.UNEXPLAINED, "swap"): "the columns of theta and q are swapped: {percent} of the torque "
+    "(RMS) are no function of the motion, and hardly any the other way round",
+    (Kind.STIFFNESS_SIGN, "swap"): "the columns of theta and q are swapped: the stiffness would be "
+    "{measured}, and is above 0 the other way round",
     (Kind.SIGN, "power"): "with this sign the joint would drive its motor, by {measured} on "
     "average, and friction takes power from the motor",
     (Kind.AT_REST, "q"): "the link does not move while the motor does: its encoder is dead, or the "

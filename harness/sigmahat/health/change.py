@@ -9,6 +9,7 @@ does not depend on what the logs claim about themselves (Knapp and Hartung, Stat
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -90,6 +91,11 @@ class Series:
     least: float = 0.0
     """Least scatter of the values: results that agree better do so by chance, or by rounding."""
 
+    @cached_property
+    def regression(self) -> "_Regression":
+        """The regression in which changes are looked for."""
+        return _Regression(self)
+
     def part(self, first: int, last: int) -> "Series":
         """Returns the logs from index `first` up to, but without, `last`."""
         return self.taken(slice(first, last))
@@ -129,7 +135,7 @@ def largest_change(series: Series) -> Change | None:
     """Returns the change with the largest |z|; None for logs too few or too alike to judge."""
     if len(series.values) <= _LEAST_FREEDOM:
         return None
-    changes = _Regression(series)
+    changes = series.regression
     if changes.freedom < _LEAST_FREEDOM:
         return None
     best: tuple[float, Kind, int] | None = None
@@ -151,7 +157,7 @@ def largest_episode(series: Series) -> Episode | None:
     logs too few or too alike to judge."""
     count = len(series.values)
     last = count - FEWEST_AFTER
-    if count < 3 * FEWEST_AFTER or (changes := _Regression(series)).freedom < _LEAST_FREEDOM:
+    if count < 3 * FEWEST_AFTER or (changes := series.regression).freedom < _LEAST_FREEDOM:
         return None
     ends = np.unique(
         np.linspace(FEWEST_AFTER, last, min(_ENDS, last - FEWEST_AFTER + 1)).astype(int)
@@ -162,7 +168,7 @@ def largest_episode(series: Series) -> Episode | None:
     rarer = float(np.sqrt(max(z**2 - 2 * np.log(_RARER * _ENDS), 0.0)))
     if rarer == 0:
         return None
-    begin = _Regression(series.part(0, int(ends[end]))).fitted(Kind.STEP, int(ends[first]))
+    begin = series.part(0, int(ends[end])).regression.fitted(Kind.STEP, int(ends[first]))
     return Episode(int(ends[first]), int(ends[end]), _with_common(rarer, begin.size, series.common))
 
 
@@ -331,7 +337,7 @@ def contrast(series: Series, first: int, last: int) -> tuple[float, float]:
     last   below the number of logs
     """
     chosen = np.r_[0:first, last : len(series.values)]
-    return _Regression(series.taken(chosen)).step(first)
+    return series.taken(chosen).regression.step(first)
 
 
 def segments(series: Series, limit: float) -> Sequence[Change]:
@@ -369,7 +375,7 @@ def _both_ends(series: Series, limit: float, first: int) -> list[Change]:
     episode = largest_episode(series)
     if episode is None or episode.z <= limit:
         return []
-    begin = _Regression(series.part(0, episode.end)).fitted(Kind.STEP, episode.first)
-    rest = _Regression(series.part(episode.first, len(series.values)))
+    begin = series.part(0, episode.end).regression.fitted(Kind.STEP, episode.first)
+    rest = series.part(episode.first, len(series.values)).regression
     end = rest.fitted(Kind.STEP, episode.end - episode.first)
     return [replace(begin, at=first + episode.first), replace(end, at=first + episode.end)]

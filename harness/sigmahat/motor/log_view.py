@@ -56,6 +56,11 @@ class LogView:
         """Moves the signals of theta, q or tau to earlier times [s]."""
         return self._with_port(port, lambda values: _moved(values, time / self.T))
 
+    def exchanged(self) -> LogView:
+        """Takes theta for q, and q for theta."""
+        pieces = [replace(each, theta=each.theta + each.phi, phi=-each.phi) for each in self.pieces]
+        return replace(self, pieces=pieces)
+
     def _with_port(self, port: str, change: Callable[[Array], Array]) -> LogView:
         """Changes the signals of one port, and with theta or q the deformation."""
         pieces = []

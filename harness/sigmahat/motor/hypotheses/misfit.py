@@ -51,6 +51,14 @@ def misfit(view: LogView, fit: QuickFit) -> Evidence | None:
     return Evidence(math.sqrt(share), [Hypothesis(f"ports.{port}.column", None)])
 
 
+def is_explained_by_swap(view: LogView, fit: QuickFit) -> bool:
+    """Returns whether the torque is a function of the motion if motor and link change places: with
+    both measured after the gear, their motions do not show which is which."""
+    if not {"theta", "q"} <= view.configuration.ports.keys():
+        return False
+    return 1 - explained(_in_motion(view.exchanged(), fit.form)) < _UNEXPLAINED
+
+
 def _in_motion(view: LogView, form: Form) -> Equations:
     """Returns the equations without the times at rest; all of them if hardly any would be left."""
     parts = [part for piece in view.pieces for part in _moving(piece, view.T, form)]

@@ -91,8 +91,14 @@ def swapped(view: LogView) -> Evidence | None:
     slope = _clear_slope(other)
     if slope is None or distance(abs(slope.value), 1.0) > math.log(_ALIKE):
         return None
-    columns = {"ports.theta.column": q.column, "ports.q.column": theta.column}
-    return Evidence(now.value, [Hypothesis(key, value) for key, value in columns.items()])
+    return Evidence(now.value, other_columns(view))
+
+
+def other_columns(view: LogView) -> list[Hypothesis]:
+    """Returns the columns of theta and q, each in place of the other."""
+    ports = view.configuration.ports
+    columns = {"theta": ports["q"].column, "q": ports["theta"].column}
+    return [Hypothesis(f"ports.{name}.column", column) for name, column in columns.items()]
 
 
 @dataclass(frozen=True)

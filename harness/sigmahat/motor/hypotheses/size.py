@@ -22,7 +22,7 @@ _HUGE = 5.0  # ratio to _TORQUE beyond which no robot has the torque
 _INERTIA = 50.0  # largest inertia of the motor of a usual robot, seen at the link [kg.m2]
 _CONSTANT = 10.0  # largest torque constant of a motor before a gear [N.m/A]
 _GEARED = 5.0  # least ratio of a gear behind which a motor is small
-_DEFORMATION = 1.5  # [rad]
+_DEFORMATION = 1.5  # to either side [rad]
 _MILLI = 1e-3
 
 
@@ -108,9 +108,14 @@ def _deformation(view: LogView) -> Implausible | None:
     largest = max(float(np.max(np.abs(piece.phi))) for piece in view.pieces)
     if largest <= _DEFORMATION:
         return None
-    name = "phi" if "phi" in view.configuration.ports else "q"
-    hypotheses = [Hypothesis(f"ports.{name}.unit", None), Hypothesis(f"ports.{name}.zero", None)]
-    return Implausible(largest, hypotheses, Size.DEFORMATION, "rad", _DEFORMATION, is_certain=False)
+    names = ["phi"] if "phi" in view.configuration.ports else ["q", "theta"]
+    hypotheses = [Hypothesis(f"ports.{name}.unit", None) for name in names]
+    # A wrong zero only moves the deformation.
+    range_ = max(float(np.ptp(piece.phi)) for piece in view.pieces)
+    is_certain = range_ > 2 * _DEFORMATION
+    if not is_certain:
+        hypotheses.append(Hypothesis(f"ports.{names[0]}.zero", None))
+    return Implausible(largest, hypotheses, Size.DEFORMATION, "rad", _DEFORMATION, is_certain)
 
 
 def _smaller_torque(view: LogView) -> list[Hypothesis]:

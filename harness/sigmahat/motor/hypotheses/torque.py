@@ -13,7 +13,7 @@ from sigmahat.motor.equation import Fit, Form, explains
 from sigmahat.motor.friction import few_frictions, slower
 from sigmahat.motor.hypotheses.drive import drive
 from sigmahat.motor.hypotheses.hypothesis import Evidence, Hypothesis, distance, gear_of_slope
-from sigmahat.motor.hypotheses.positions import Positions
+from sigmahat.motor.hypotheses.positions import Positions, other_columns
 from sigmahat.motor.hypotheses.slope import Slope
 from sigmahat.motor.inertia import KnownInertia
 from sigmahat.motor.log_view import LogView
@@ -79,6 +79,7 @@ class TorqueEvidence:
     gear: Evidence | None = None  # slope of q on theta by a slightly wrong gear ratio [1]
     sign: Sign | None = None
     deformation: Evidence | None = None  # negative stiffness by a wrong deformation [N.m/rad]
+    swap: Evidence | None = None  # negative stiffness by swapped positions [N.m/rad]
     zero: Zero | None = None
     asymmetry: Evidence | None = None  # ratio of the errors, without and with even powers [1]
     torque_delay: Delay | None = None
@@ -132,10 +133,25 @@ def _negative_stiffness(view: LogView, fit: QuickFit) -> TorqueEvidence:
         other = Hypothesis("ports.phi.sign", -view.configuration.ports["phi"].sign)
         of_torque = Hypothesis("ports.tau.sign", None)
         return TorqueEvidence(deformation=Evidence(fit.stiffness, [other, of_torque]))
-    keys = ("ports.theta.gear_ratio", "ports.q.gear_ratio", "ports.tau.sign")
+    if _is_swapped(view, fit):
+        return TorqueEvidence(swap=Evidence(fit.stiffness, other_columns(view)))
+    keys = [f"ports.{port}" for port in ("theta.gear_ratio", "q.gear_ratio", "tau.sign")]
+    keys.append("ports.theta.column")
     return TorqueEvidence(
         deformation=Evidence(fit.stiffness, [Hypothesis(each, None) for each in keys])
     )
+
+
+def _is_swapped(view: LogView, fit: QuickFit) -> bool:
+    """Returns whether the stiffness is positive, and the torque explained better, if motor and link
+    change places: with both measured after the gear, their motions do not show which is which."""
+    if not {"theta", "q"} <= view.configuration.ports.keys():
+        return False
+    other = quick_fit(view.exchanged(), fit.form.f_0)
+    if other is None or not other.has_stiffness or other.sign_of_motor <= 0:
+        return False
+    is_positive = np.sign(view.gamma) * other.scores[LINEAR] < -1
+    return bool(is_positive and other.fit.error < fit.fit.error)
 
 
 def _other_sign(view: LogView, fit: QuickFit, by_power: bool = False) -> Sign:
