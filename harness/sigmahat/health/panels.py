@@ -46,7 +46,7 @@ def _panel(judged: Judged, verdict: Verdict) -> Panel:
     name = quantity.name.value
     title = f"{verdict.logs.joint}: {name}"
     if quantity.name is Name.GAIN:
-        name = "inertia of the motor, as the torque shows it"  # a smaller constant, a larger one
+        name = "inertia by the torque"  # which is larger with a smaller torque constant
     return Panel(
         title=title,
         x_label=f"days since {day(first)}",

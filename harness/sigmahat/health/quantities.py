@@ -204,8 +204,8 @@ class _Table:
         self._days = np.array([each.time.timestamp() / _DAY for each in results])
         self._gain = float(np.median([each.torque_gain for each in results]))
         inertias = own.values[own.determines_inertia, own.index("B")]
-        self._inertia = float(np.median(inertias)) if len(inertias) else 1.0
-        """Inertia that stands for the usual gain [kg.m2]."""
+        self._inertia = float(np.median(inertias[:NEIGHBOURS])) if len(inertias) else 1.0
+        """Inertia that stands for the gain of the first logs, to which all are taken [kg.m2]."""
         self._effects = self._of_motion()
         self._shows_gain = own.determines_inertia | (not cancels)
         """Whether a log shows the gain, or no log needs to [size: logs]."""
@@ -450,7 +450,8 @@ class _Table:
         return Quantity(name, unit, level, series, found.logs.tolist(), claimed, is_logarithm, gain)
 
     def _gains(self) -> Array:
-        """Usual gain of the torque of each log and its neighbours; 1 without any [size: logs].
+        """Usual gain of the torque of each log and its neighbours, over that of the first logs; 1
+        where logs do not show it [size: logs].
 
         It is not the one of the log alone, whose error would be in the effect as in the inertia.
         """
