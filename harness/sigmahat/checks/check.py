@@ -18,7 +18,7 @@ from sigmahat.checks.contradictions import (
 )
 from sigmahat.checks.findings import Checked, Finding, Kind, Severity
 from sigmahat.checks.samples import at_rest, of_columns
-from sigmahat.checks.text import DOUBTS
+from sigmahat.estimator.doubts import DOUBTS
 from sigmahat.fmi.model import Value, installed_model
 from sigmahat.motor.hypotheses.hypothesis import with_value
 from sigmahat.motor.hypotheses.positions import compare_positions

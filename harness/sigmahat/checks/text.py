@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 
 from sigmahat.checks.findings import Checked, Finding, Kind, Severity
+from sigmahat.estimator.doubts import DOUBTS
 from sigmahat.motor.hypotheses.hypothesis import Setting
 from sigmahat.result.sheet import WORDS
 
@@ -12,19 +13,6 @@ TITLES = {
     Severity.NOTE: "worth a look:",
     Severity.RESTS_ON: "assumptions that no log can verify:",
 }
-DOUBTS = {
-    "NotExcited": ("ports.q.column", "the motion was too small or too short"),
-    "Misfit": ("rls.n", "the log contradicts the model"),
-    "OutOfRange": ("range.phi", "the deformation is far beyond range.phi"),
-    "FrictionOutsidePrior": (
-        "motor.D_theta",
-        "friction is further from motor.D_theta than prior.D_theta, or below 0",
-    ),
-    "InertiaOutsidePrior": ("motor.B", "the inertia is further from motor.B than prior.B allows"),
-    "NegativeStiffness": ("ports.q.sign", "the stiffness found is negative"),
-    "Change": ("rls.n", "the stiffness seems to change"),
-}
-"""Items of the FMU output `doubt`, with the key to check first and a description."""
 
 _OF_PORTS = (Kind.PORT, Kind.LARGEST_TORQUE)  # what follows from unit and side of all ports
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from datetime import datetime
 
-from sigmahat.checks.text import DOUBTS
+from sigmahat.estimator.doubts import DOUBTS
 from sigmahat.health.change import Kind
 from sigmahat.health.judge import (
     FEWEST,
