@@ -63,10 +63,11 @@ def _in_motion(view: LogView, form: Form) -> Equations:
     """Returns the equations without the times at rest; all of them if hardly any would be left."""
     parts = [part for piece in view.pieces for part in _moving(piece, view.T, form)]
     independent = 2 * form.f_0 * view.T * sum(len(part.theta) for part in parts)
-    whole = with_all_corrections(view, form)
-    if independent < _PER_COEFFICIENT * len(whole.names):
-        return whole
-    return with_all_corrections(replace(view, pieces=parts), form)
+    if parts:
+        moving = with_all_corrections(replace(view, pieces=parts), form)
+        if independent >= _PER_COEFFICIENT * len(moving.names):
+            return moving
+    return with_all_corrections(view, form)
 
 
 def _moving(piece: Signals, T: float, form: Form) -> Iterator[Signals]:

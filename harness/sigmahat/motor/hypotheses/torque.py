@@ -135,11 +135,9 @@ def _negative_stiffness(view: LogView, fit: QuickFit) -> TorqueEvidence:
         return TorqueEvidence(deformation=Evidence(fit.stiffness, [other, of_torque]))
     if _is_swapped(view, fit):
         return TorqueEvidence(swap=Evidence(fit.stiffness, other_columns(view)))
-    keys = [f"ports.{port}" for port in ("theta.gear_ratio", "q.gear_ratio", "tau.sign")]
-    keys.append("ports.theta.column")
-    return TorqueEvidence(
-        deformation=Evidence(fit.stiffness, [Hypothesis(each, None) for each in keys])
-    )
+    keys = ("theta.gear_ratio", "q.gear_ratio", "tau.sign", "theta.column")
+    hypotheses = [Hypothesis(f"ports.{each}", None) for each in keys]
+    return TorqueEvidence(deformation=Evidence(fit.stiffness, hypotheses))
 
 
 def _is_swapped(view: LogView, fit: QuickFit) -> bool:
